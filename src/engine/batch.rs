@@ -145,8 +145,8 @@ impl RowBatch {
         self.expansions.iter().any(Option::is_some) || self.known.iter().any(Option::is_some)
     }
 
-    /// Returns the batch with what the nets of its sides know of all rows, with a residual of at most `most` whisker lengths: expansions, or
-    /// known rows where they are [`enough`](needs_values).
+    /// Returns the batch with the expansions of all rows, or with their known rows if the map needs no values ([`needs_values`]). A row whose
+    /// residual exceeds `most` whisker lengths gets none.
     #[must_use]
     pub fn with_nets(mut self, most: f64) -> Self {
         let sides = &self.sides;

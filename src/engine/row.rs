@@ -32,18 +32,11 @@ const ROUNDING: f64 = 1e-15;
 /// and the chord angle at most about the push angle.
 fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     let push = end.push.min(1.0);
-    let [arc, angle, force, x, y, moment, chord, distance, energy] = side.sizes(end);
-    let sizes = [
-        arc,
-        angle,
-        force,
-        x,
-        y,
-        moment,
-        push * chord,
-        distance,
-        push * energy,
-    ];
+    let mut sizes = side.sizes(end);
+    let [.., chord, _, energy] = &mut sizes;
+    for size in [chord, energy] {
+        *size *= push;
+    }
     sizes.map(|size| VALUE_WEIGHT / size)
 }
 
@@ -108,8 +101,8 @@ pub struct RowExpansion {
     pub end_push: f64,
 }
 
-/// Largest slope of the push angle at a fold, over its value there: where the expansions end a thousandth of the row before the fold, the
-/// slope is about twice as large.
+/// Largest slope of the push angle at a fold, where it must be flat, over its value there. Expansions that end a thousandth of the row before the
+/// fold have about twice this slope.
 const FOLD_SLOPE: f64 = 1e-3;
 
 impl RowExpansion {
@@ -126,7 +119,7 @@ impl RowExpansion {
         (residual <= most).then(expansion)?
     }
 
-    /// Shortens the expansions of `row`, which ends at the argument `end`, to what rounding leaves. Returns `None` if a coefficient is not
+    /// Drops the last coefficients of the expansions of `row` that are only rounding. The row ends at the argument `end`. Returns `None` if a coefficient is not
     /// finite, if the push angle does not grow up to the end, or if the expansions contradict the end, which is computed apart: they must
     /// have its push angle there, and be flat at a fold, or have their contact at the tip.
     fn new(

@@ -12,7 +12,7 @@ use glam::DVec2;
 use std::sync::Arc;
 use whiskmap_mechanics::rod::{Rod, Units, arclength};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
-use whiskmap_mechanics::shooting::{FullState, PeakStrain, Reader};
+use whiskmap_mechanics::shooting::{Dimension, FullState, PeakStrain, Reader, Reading};
 
 /// Channel values of a state in map units, `[channel]`, in the order of [`STATE_CHANNELS`].
 pub type Values = [f64; STATE_CHANNELS.len()];
@@ -24,7 +24,8 @@ pub struct WhiskerSide {
     pub columns: Arc<SideColumns>,
     /// Stable sheet of the whisker side, with a row for each distance of the map.
     pub sheet: Sheet,
-    /// Channel values `[channel]` of a difference of 1 in whisker lengths, radians, `E I_base/L_w^2` and `E I_base/L_w`.
+    /// Units of the channels, `[channel]`: the map's value of 1 whisker length, 1 radian, `E I_base/L_w^2` (forces), or `E I_base/L_w` (moment and
+    /// energy).
     pub unit_values: Values,
     /// Derivatives of the push angle at the detachment of each row, in degrees per unit of the parameter: `[row][parameter]`. Empty
     /// without such channels.
@@ -49,8 +50,8 @@ impl WhiskerSide {
         }
     }
 
-    /// Returns this whisker side with a net that has states with a residual of at most `most` whisker lengths, for the rows whose cells take
-    /// more time by trajectories.
+    /// Returns this whisker side with a net whose states have a residual of at most `most` whisker lengths. It serves the rows for which it takes less
+    /// time than a trajectory for each cell.
     #[must_use]
     pub fn with_net(mut self, most: f64) -> Self {
         let net = self.net(most);
@@ -92,7 +93,7 @@ impl WhiskerSide {
     #[must_use]
     pub fn values(&self, row: usize, tau: f64, full: &FullState, signed_push: f64) -> Values {
         let touch = self.sheet.rows[row].touch;
-        self.reader.read(tau, full, touch, signed_push).channels()
+        self.reader.values(tau, full, touch, signed_push)
     }
 
     /// Returns the channel values `[channel]` of a state with friction of `row` at `signed_push`, in radians.
@@ -106,9 +107,7 @@ impl WhiskerSide {
         let rod = state.rod(&self.sheet.rod);
         let reader = self.reader.with_contact(&rod);
         let touch = self.sheet.rows[row].touch;
-        reader
-            .read(state.at.point.x, &state.variation.full, touch, signed_push)
-            .channels()
+        reader.values(state.at.point.x, &state.variation.full, touch, signed_push)
     }
 
     /// Returns the largest bending strains of states with contact and load `(tau, load)` and the side's friction: `[point]`. Each state takes a
@@ -154,10 +153,12 @@ impl WhiskerSide {
         let [length, radian, force, ..] = self.unit_values;
         let arc = arclength(rod, end.tau) * length;
         let force = (end.load * rod.radius(end.tau).powi(2) * force).abs();
-        let moment = force * arc;
-        [
-            arc, radian, force, force, force, moment, radian, arc, moment,
-        ]
+        Reading::DIMENSIONS.map(|dimension| match dimension {
+            Dimension::Length => arc,
+            Dimension::Angle => radian,
+            Dimension::NormalForce | Dimension::Force => force,
+            Dimension::Moment => force * arc,
+        })
     }
 
     /// Returns the cell of `row` with a solution `state` at `signed_push`, in radians; NaN values unless `has_values`.

@@ -11,13 +11,13 @@ use whiskmap_mechanics::shooting::batch::Batch;
 /// Number of states between first touch and the end of the push.
 const BETWEEN: u32 = 12;
 
-/// Slid distance by which the end must be ahead of the states before it, as a part of the range of their slid distances. It allows for the
-/// error of the cubics between them.
+/// The slid distance at the end must be larger than all before it by this part of their range. It allows for the error of the cubics between the
+/// states.
 const AHEAD: f64 = 0.01;
 
 /// Returns true for each of the `rows` of `sheet` whose contact slides toward the tip at the end of the push without doubt, `[row]`. Each has
-/// its index, the crossing at its end, and the state there. The contact is never ahead of all places where the tip limit has been. So it
-/// slides if the tip limit is farthest at the end.
+/// its index, the crossing at its end, and the state there. The contact cannot be farther toward the tip than the tip limit
+/// has been. So if the tip limit is farthest at the end, the contact slides there.
 pub fn surely_slides_to_end(
     sheet: &Sheet,
     rows: &[(usize, Crossing, FirstVariation)],

@@ -6,6 +6,7 @@ use crate::engine::{BatchRow, Cell, Cells, RowBatch, Values, WhiskerSide};
 use crate::random::hash;
 use crate::sheet::Sheet;
 use std::ops::Range;
+use whiskmap_mechanics::shooting::{Dimension, Reading};
 
 /// Cells for each audited one.
 const ONE_IN: u64 = 256;
@@ -58,8 +59,8 @@ impl AuditSample {
 /// certificate of expansions allows.
 const VALUES_PER_MISS: f64 = 10.0;
 
-/// Largest change of a value, as a part of its size, over the change of its row's argument, as a part of the argument's end. Values are smooth
-/// functions of the argument.
+/// Largest rate at which a value changes along its row: its change in parts of its size, over the change of the row's argument in parts of the
+/// argument's end. Values are smooth functions of the argument.
 const BY_ARGUMENT: f64 = 4.0;
 
 /// Compares the solved `cells` of an engine with the cells of the `rest` that the CPU `found`. Residuals of cells are at most
@@ -135,14 +136,15 @@ fn holds(
 
 /// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger of the sizes at its end and the sizes of `ours`.
 fn sizes(side: &WhiskerSide, at_end: Values, ours: Values) -> Values {
-    let largest = |[arc, _, force, .., distance, _]: Values| [arc, force, distance, force * arc];
-    let (at_end, ours) = (largest(at_end), largest(ours));
-    let [arc, force, distance, moment] =
-        std::array::from_fn(|i| f64::max(at_end[i].abs(), ours[i].abs()));
-    let [_, radian, ..] = side.unit_values;
-    [
-        arc, radian, force, force, force, moment, radian, distance, moment,
-    ]
+    let of_state = |[arc, _, force, ..]: Values| [force.abs(), (force * arc).abs()];
+    let (at_end_alone, ours_alone) = (of_state(at_end), of_state(ours));
+    let [force, moment] = [0, 1].map(|i| f64::max(at_end_alone[i], ours_alone[i]));
+    std::array::from_fn(|i| match Reading::DIMENSIONS[i] {
+        Dimension::Length => f64::max(at_end[i].abs(), ours[i].abs()),
+        Dimension::Angle => side.unit_values[i],
+        Dimension::NormalForce | Dimension::Force => force,
+        Dimension::Moment => moment,
+    })
 }
 
 #[cfg(test)]

@@ -8,12 +8,13 @@ use super::fallback::complete;
 use super::nets::PendingNets;
 use super::panel::Panel;
 use super::rows;
-use super::sides::{SideNet, whisker_sides};
+use super::sides::whisker_sides;
 use super::summary::{EngineCells, Summary};
 use super::times::Stage;
 use crate::engine::{Cells, Cpu, RowBatch, SideColumns, WhiskerSide, Worker, needs_values};
 use crate::plan::{CELLS_IN_FLIGHT, Plan};
 use crate::scene::{Scene, SweptWhisker};
+use crate::sheet::SheetUse;
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::iter;
@@ -216,29 +217,29 @@ impl<'a, 'e> Pipeline<'a, 'e> {
 
     /// Begins the nets of the next group, with a residual of at most `most` whisker lengths.
     fn draft_next(&mut self, most: f64) -> Option<PendingNets> {
-        let sides = self.sides_of_next(SideNet::Guesses)?;
+        let sides = self.sides_of_next((SheetUse::Guesses, None))?;
         let (method, worker) = (self.method, &mut self.worker);
         let nets = || PendingNets::new(sides, method, most, worker);
         Some(self.summary.stages.time(Stage::Sheets, nets))
     }
 
-    /// Returns the net that the sides of the next group get, if no device integrates it.
-    fn side_net(&self) -> SideNet {
+    /// Returns what the sheets of the next group serve, and the residual of their values in whisker lengths, if no device integrates them.
+    fn side_net(&self) -> (SheetUse, Option<f64>) {
         let most = self.worker.row_residual;
         match most.filter(|_| self.worker.is_working()) {
-            Some(most) if needs_values(self.plan.channels, most) => SideNet::Values(most),
-            Some(_) => SideNet::KnownRows,
-            None => SideNet::Guesses,
+            Some(most) if needs_values(self.plan.channels, most) => (SheetUse::Guesses, Some(most)),
+            Some(_) => (SheetUse::KnownRows, None),
+            None => (SheetUse::Guesses, None),
         }
     }
 
-    /// Computes the sides of the next group with this `net`.
-    fn sides_of_next(&mut self, net: SideNet) -> Option<Vec<WhiskerSide>> {
+    /// Computes the sides of the next group with this `net` ([`whisker_sides`]).
+    fn sides_of_next(&mut self, net: (SheetUse, Option<f64>)) -> Option<Vec<WhiskerSide>> {
         let whiskers = self.groups.next()?;
         let found = whiskers.filter_map(|index| self.scene.whisker(index).ok());
         let found: Vec<SweptWhisker> = found.collect();
-        let of_plan = (self.plan, self.method, net);
-        let sides = || whisker_sides(self.scene, of_plan, &self.columns, &found);
+        let of_plan = (self.plan, self.method);
+        let sides = || whisker_sides(self.scene, of_plan, net, &self.columns, &found);
         Some(self.summary.stages.time(Stage::Sheets, sides))
     }
 

@@ -9,21 +9,12 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// Net that a side gets with its sheet.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum SideNet {
-    /// For guesses of all cells.
-    Guesses,
-    /// For guesses, and with values whose rows have a residual of at most this many whisker lengths.
-    Values(f64),
-    /// For known rows, of which few cells need guesses.
-    KnownRows,
-}
-
-/// Computes every side of some `whiskers` of `scene` with this `net`, whisker by whisker, with the derivatives of the plan.
+/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. Rows serve the first part of `net`;
+/// with its other part, a side also has values whose rows have a residual of at most this many whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,
-    (plan, method, net): (&Plan, Method, SideNet),
+    (plan, method): (&Plan, Method),
+    (serves, most): (SheetUse, Option<f64>),
     columns: &[Arc<SideColumns>],
     whiskers: &[SweptWhisker],
 ) -> Vec<WhiskerSide> {
@@ -31,10 +22,6 @@ pub fn whisker_sides(
     let pairs: Vec<_> = whiskers.iter().flat_map(of_whisker).collect();
     let grid = &scene.grid;
     let derivatives: Vec<Parameter> = plan.channels.derivatives().collect();
-    let serves = match net {
-        SideNet::KnownRows => SheetUse::KnownRows,
-        SideNet::Guesses | SideNet::Values(_) => SheetUse::Guesses,
-    };
     let request = |(swept, columns): &(&SweptWhisker, &Arc<SideColumns>)| {
         let distances = grid.distance_mm.iter();
         SheetRequest {
@@ -54,9 +41,9 @@ pub fn whisker_sides(
             side.push_derivatives =
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
-        match net {
-            SideNet::Values(most) => side.with_net(most),
-            SideNet::Guesses | SideNet::KnownRows => side,
+        match most {
+            Some(most) => side.with_net(most),
+            None => side,
         }
     });
     sides.collect()

@@ -174,7 +174,7 @@ impl SceneData {
         rows.filter_map(|row| Some((&*row.name, &**row.found.as_ref().err()?)))
     }
 
-    /// Returns the whiskers at the ends of the sweep axes, and all of a table: an effect that any whisker has, one of these has.
+    /// Returns the whiskers at the ends of the sweep axes, and all of a table. If any whisker has an effect, one of these has it.
     pub fn corner_whiskers(&self) -> impl Iterator<Item = SweptWhisker> {
         let ends = self.grid.ends();
         let corners = 0..ends.whisker_count();

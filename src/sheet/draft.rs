@@ -29,7 +29,7 @@ pub enum SheetUse {
 }
 
 impl SheetUse {
-    /// Returns the errors to which panels are computed, the first one with which they show all folds.
+    /// Returns the errors of the panels to try, one after the other, until the panels show all folds.
     const fn errors(self) -> &'static [f64] {
         match self {
             Self::Guesses => &GUESS_ERRORS,

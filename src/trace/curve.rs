@@ -180,7 +180,7 @@ pub enum EndDetail {
 }
 
 /// Computes the detachments of each of `pushed` with this `detail`, and returns `keep(index, detachment, crossing)` of each: `[pushed][distance]`.
-/// The detachment is read from the crossing of the sheet's edge; `None` without an end.
+/// The crossing is the end of the push; `None` if the push has no end.
 ///
 /// The ends of all whiskers share batches. Results do not depend on the other whiskers.
 pub(crate) fn detachments<T: Send>(

@@ -16,20 +16,21 @@ use crate::sheet::row::{Crossing, Edge, REACH_SLACK, Row};
 use glam::DVec2;
 use whiskmap_mechanics::numerics::nearest_turn;
 
-/// Row with two samples of an edge between which it crosses.
-struct CrossingCandidate {
+/// Row with two samples of an edge between which it crosses, and the predicted crossing.
+struct CrossingCandidate<'a> {
     row: usize,
-    edge: Edge,
-    predicted: Prediction,
+    problem: EdgeProblem<'a>,
+    /// Predicted direction of the pole in radians, continuous from first touch.
+    phi: f64,
     between: [EdgeSample; 2],
 }
 
-impl CrossingCandidate {
+impl CrossingCandidate<'_> {
     /// Returns true if `point` is between the samples.
     fn holds(&self, point: DVec2) -> bool {
         let [a, b] = self.between;
         let is_between = |x: f64, a: f64, b: f64| (x - a) * (x - b) <= 0.0;
-        match self.edge {
+        match self.problem.edge {
             Edge::Fold => is_between(point.x, a.tau, b.tau),
             Edge::Tip => is_between(point.y, a.load, b.load),
         }
@@ -73,10 +74,17 @@ pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossi
                 if at_touch && row.is_reached() != reached[1] {
                     found[index].push(Crossing::at_touch(case.rod));
                 } else if !at_touch && reached[0] != reached[1] {
+                    let predicted = predict(edges, edge, [&a, &b], *target);
                     candidates.push(CrossingCandidate {
                         row: index,
-                        edge,
-                        predicted: predict(edges, edge, [&a, &b], *target),
+                        problem: EdgeProblem {
+                            rod: case.rod,
+                            edge,
+                            pole_distance: row.pole_distance,
+                            start: DVec2::new(predicted.tau, predicted.load),
+                            second: predicted.second,
+                        },
+                        phi: predicted.phi,
                         between: [a, b],
                     });
                 }
@@ -96,28 +104,19 @@ pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossi
 /// Corrects the candidates by Newton's method, or else by bisection between the samples; steep crossings are corrected again with twice
 /// the steps. Returns one crossing for each candidate.
 fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> Vec<Crossing> {
-    let SheetCase { method, rod, side } = case;
-    let problems: Vec<EdgeProblem> = candidates
-        .iter()
-        .map(|c| EdgeProblem {
-            rod,
-            edge: c.edge,
-            pole_distance: rows[c.row].pole_distance,
-            start: DVec2::new(c.predicted.tau, c.predicted.load),
-            second: c.predicted.second,
-        })
-        .collect();
+    let SheetCase { method, side, .. } = case;
+    let problems: Vec<EdgeProblem> = candidates.iter().map(|c| c.problem).collect();
     let iterates = edge_newton_predicted(method, &problems);
     let reached = |(c, iterate): (&CrossingCandidate, &EdgeIterate)| {
         let map = &iterate.here.map;
-        let phi = nearest_turn(map.pole.to_angle(), c.predicted.phi);
+        let phi = nearest_turn(map.pole.to_angle(), c.phi);
         Crossing {
-            edge: c.edge,
+            edge: c.problem.edge,
             tau: iterate.point.x,
             load: iterate.point.y,
             push: side.sign() * (phi - rows[c.row].touch),
             residual: iterate.residual,
-            slope: c.edge.slope(map),
+            slope: c.problem.edge.slope(map),
         }
     };
     let mut corrected: Vec<Crossing> = candidates.iter().zip(&iterates).map(reached).collect();
@@ -125,12 +124,10 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
         |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
     let failed: Vec<usize> = (0..candidates.len()).filter(has_failed).collect();
     let between = failed.iter().map(|&i| {
-        let CrossingCandidate { edge, between, .. } = candidates[i];
-        EdgeBisection::new(
-            edge,
-            between,
-            libm::log(rows[candidates[i].row].pole_distance),
-        )
+        let CrossingCandidate {
+            problem, between, ..
+        } = candidates[i];
+        EdgeBisection::new(problem.edge, between, libm::log(problem.pole_distance))
     });
     let bisected = bisect(case, between.collect());
     for (i, bisected) in failed.into_iter().zip(bisected) {
@@ -139,10 +136,10 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
         // Where the first fold jumps from contact to contact, there is nothing between the samples. The result of Newton's method may be
         // on another sheet, so continuation must decide.
         corrected[i] = bisected.filter(Crossing::is_sound).unwrap_or(Crossing {
-            edge: c.edge,
-            tau: c.predicted.tau,
-            load: c.predicted.load,
-            push: side.sign() * (c.predicted.phi - rows[c.row].touch),
+            edge: c.problem.edge,
+            tau: c.problem.start.x,
+            load: c.problem.start.y,
+            push: side.sign() * (c.phi - rows[c.row].touch),
             residual: f64::INFINITY,
             slope: f64::NAN,
         });

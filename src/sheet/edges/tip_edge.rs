@@ -62,8 +62,8 @@ impl SampledTipEdge {
     }
 }
 
-/// Slope of the distance at first touch, in parts of the slope at the next place, that is rounding: the distance at such an extremum is equal to that
-/// at first touch but for 1e-18.
+/// Below this ratio to the slope at the next place, the slope of the distance at first touch is only rounding. First touch is then the extremum: both
+/// distances differ by 1e-18.
 const FLAT_TOUCH: f64 = 1e-9;
 
 /// Last Newton step toward an extremum, relative to the width of its bracket. The remaining error is its square.

@@ -112,7 +112,8 @@ fn march_samples(begin: f64) -> impl Iterator<Item = f64> {
     })
 }
 
-/// Part of a fold's load, next to it, in which signs of coarse trajectories do not count. Brackets around predicted folds allow as much.
+/// Signs of coarse trajectories are uncertain next to a fold. They do not count at loads that differ from the fold's load by less than this part of
+/// it. Brackets around predicted folds allow as much.
 const COARSE_OFF: f64 = 5e-4;
 
 /// Returns true if the states of each contact of `folds` at loads below its fold, sampled as by a march, are all stable.

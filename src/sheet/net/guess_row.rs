@@ -18,12 +18,12 @@ use whiskmap_mechanics::shooting::contact::exp;
 /// cell is followed by continuation.
 pub const PUSH_MARGIN: f64 = 1e-4;
 
-/// Largest of the last coefficients of a row as polynomials of the part of the load, added to twice the error of its panel. Rows with larger ones
-/// become polynomials of the load, which are found in 30 us. Newton's method needs a second trajectory from guesses with this error. Misses at the
+/// Largest last coefficient of a row as polynomials of the part of the load, beyond twice the error of its panel. A row with a larger one becomes
+/// polynomials of the load, which are found in 30 us. Newton's method needs a second trajectory from guesses with this error. Misses at the
 /// ends do not count: those of the panel remain in a row of the load.
 const ROW_ERROR: f64 = 1e-5;
 
-/// Relative tolerance of the load at the nearest contact of a search for a row's states by their loads.
+/// Relative error of the load that is allowed at the nearest contact, where a search for a row's states by their loads begins.
 const LOAD_TOLERANCE: f64 = 1e-3;
 
 /// States of a row between two of its ends, by a panel for guesses.

@@ -20,8 +20,8 @@ use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::ShootingMap;
 
-/// Largest errors of `ln D` and `phi` of guesses, by the last coefficients: of the first panels, and of those that are made if the first ones do not
-/// show all folds. The error is mostly much smaller, so that the step of Newton's method from nearly every guess is short enough to be the last.
+/// Largest errors of `ln D` and `phi` of guesses, estimated from the last coefficients. The second one is for panels that are made because those with
+/// the first one do not show all folds. The error is mostly much smaller, so that the step of Newton's method from nearly every guess is short enough to be the last.
 /// The steps of coarse trajectories change with the load, which leaves up to 6e-6. With measured radii, states are not analytic where the contact
 /// passes from one radius to the next, and few panels have the smaller error.
 pub const GUESS_ERRORS: [f64; 2] = [3e-7, 1e-5];
@@ -151,8 +151,8 @@ impl GuessPanel {
         rows.iter().zip(states.chunks(2)).map(residual).collect()
     }
 
-    /// Returns true if the panel shows that the first folds of `contacts` are all folds up to them: at no other place does the determinant
-    /// vanish, at the contact nodes or between them.
+    /// Returns true if the panel shows that no fold lies before the first folds of `contacts`: the determinant does not vanish at smaller loads,
+    /// neither at the contact nodes nor between them.
     pub fn shows_folds(&self, rod: &Rod, contacts: &ContactNodes) -> bool {
         let [in_contact, in_load] = self.panel.tensor.tails().map(|[last, _]| last[DETERMINANT]);
         let error = MARGIN * larger(in_contact, in_load);

@@ -13,9 +13,9 @@ use whiskmap_mechanics::rod::Rod;
 /// Number of points of `ln q` as a function of `u`: the scale of the load need only be smooth.
 const SCALE: usize = 9;
 
-/// Number of columns of a row with columns of its own, over the number of the panel's columns: `[constant, for each part of the largest load]`. On
-/// a shorter range, fewer are as accurate; the last coefficients of the row show it.
-const OWN: [f64; 2] = [0.5, 0.5];
+/// A row that ends early gets columns for its shorter range. Their number is the panel's, times `[0] + [1] * (the row's range of loads over the
+/// panel's)`. On a shorter range, fewer are as accurate; the last coefficients of the row show it.
+const EARLY: [f64; 2] = [0.5, 0.5];
 
 /// Smallest part of a panel's largest load at which a row has the columns of the panel. A row with a smaller load at its end gets its own.
 const SHARED: f64 = 0.95;
@@ -140,7 +140,7 @@ impl<const F: usize> NetPanel<F> {
             .flatten();
         shared.or_else(|| {
             let range = to - from;
-            let count = (OWN[0] + OWN[1] * range.abs()) * self.columns.count() as f64;
+            let count = (EARLY[0] + EARLY[1] * range.abs()) * self.columns.count() as f64;
             // A part of the loads is a small number.
             let places = chebyshev_points(count.ceil() as usize).iter();
             let places: Vec<f64> = places.map(|point| from + point * range).collect();

@@ -9,7 +9,7 @@ const LEFT_OUT: f64 = 0.5 / MARGIN;
 /// Factor by which more points are taken than the rate at the last coefficients calls for.
 const SAFETY: f64 = 1.1;
 
-/// Contacts and loads of the first panel beside those for each decimal digit of the bound.
+/// Contacts and loads of the first panel, to which those for each decimal digit of the bound are added.
 const FIRST: [f64; 2] = [4.0, 2.0];
 
 /// Contacts for each decimal digit of the bound, and for each in a range of 1 in `u`. For a bound of 1e-10, 24 are mostly enough for a range of

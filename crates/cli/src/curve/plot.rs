@@ -123,7 +123,7 @@ fn detachments(
         };
         distances.extend((1..=AT_TIP).map(near));
     }
-    let of_side = |side| trace::curve_at(resolution, whisker, pole, side, &distances);
+    let of_side = |side| trace::ends_at(resolution, whisker, pole, side, &distances);
     (reach_mm, Side::BOTH.into_iter().flat_map(of_side).collect())
 }
 

@@ -34,7 +34,7 @@ pub use map::{
 };
 pub use material::{Graded, Liouville, Material, Measured, Uniform};
 pub use parabola::{Bent, TANGENT as REST_TANGENT, TERMS as REST_TERMS};
-pub use reading::{Reader, Reading, StateNumbers};
+pub use reading::{Dimension, Reader, Reading, StateNumbers};
 pub use resolution::{PieceSteps, Resolution, StepRule};
 pub use strain::{PeakStrain, StepNodes, bending_strain};
 pub use system::{

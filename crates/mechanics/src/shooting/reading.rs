@@ -5,9 +5,24 @@ use crate::numerics::{LaneNumbers, Lanes, Real, keep, nearest_turn, pack};
 use crate::rod::{Rest, Rod, Units, arclength_at};
 use glam::DVec2;
 
+/// Dimension of a channel of a state.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dimension {
+    /// Length or distance, in mm.
+    Length,
+    /// Angle, in degrees.
+    Angle,
+    /// Normal part of the force between pole and whisker, in uN.
+    NormalForce,
+    /// Component of that force, in uN.
+    Force,
+    /// Moment in nN m, or energy in nJ.
+    Moment,
+}
+
 /// Defines [`Reading`] by its columns, and the macro `state_column`, which has their descriptions for tables.
 macro_rules! reading {
-    ($($(#[doc = $text:literal])+ $column:ident,)*; $(#[doc = $derived:literal])+ $last:ident = $value:expr) => {
+    ($($(#[doc = $text:literal])+ $column:ident: $dimension:ident,)*; $(#[doc = $derived:literal])+ $last:ident = $value:expr) => {
         /// A reading: a state of the whisker in physical units. The first axis of the base frame is the base's tangent. Force and moment are
         /// those that the pole exerts at the base.
         #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -19,6 +34,9 @@ macro_rules! reading {
         impl Reading {
             /// Names of the channels of a state, `[channel]`: the fields but the last one.
             pub const CHANNELS: [&str; [$(stringify!($column)),*].len()] = [$(stringify!($column)),*];
+
+            /// Dimensions of the channels of a state, `[channel]`.
+            pub const DIMENSIONS: [Dimension; Self::CHANNELS.len()] = [$(Dimension::$dimension),*];
 
             /// Returns the values of the channels, in the order of [`Reading::CHANNELS`].
             #[must_use]
@@ -45,23 +63,23 @@ macro_rules! reading {
 
 reading! {
     /// Arclength from the base to the contact, in mm.
-    arc_length_mm,
+    arc_length_mm: Length,
     /// Angle of the tangent at the contact, from the base's tangent, in degrees.
-    contact_angle_deg,
+    contact_angle_deg: Angle,
     /// Normal part of the force between pole and whisker, in uN; never negative.
-    force_un,
+    force_un: NormalForce,
     /// Force that the pole puts on the base, along the base's tangent, in uN.
-    base_force_x_un,
+    base_force_x_un: Force,
     /// Force that the pole puts on the base, to the left of its tangent, in uN.
-    base_force_y_un,
+    base_force_y_un: Force,
     /// Moment of the pole on the base, in nN m: positive turns it to the left.
-    base_moment_nnm,
+    base_moment_nnm: Moment,
     /// Chord angle: from the resting whisker as far away to the contact, in degrees.
-    push_chord_deg,
+    push_chord_deg: Angle,
     /// Straight distance from the base to the contact, in mm.
-    contact_distance_mm,
+    contact_distance_mm: Length,
     /// Bending energy of the whisker, in nJ.
-    energy_nj,
+    energy_nj: Moment,
     ;
     /// Size of the whole force between pole and whisker, with friction, in uN.
     contact_force_un = DVec2::new(base_force_x_un, base_force_y_un).length()
@@ -170,18 +188,13 @@ impl Reader {
             moment_nnm,
             ..
         } = self.units;
-        let degrees = 1f64.to_degrees();
-        [
-            length_mm,
-            degrees,
-            side * self.normal * force_un,
-            force_un,
-            force_un,
-            moment_nnm,
-            degrees,
-            length_mm,
-            moment_nnm,
-        ]
+        Reading::DIMENSIONS.map(|dimension| match dimension {
+            Dimension::Length => length_mm,
+            Dimension::Angle => 1f64.to_degrees(),
+            Dimension::NormalForce => side * self.normal * force_un,
+            Dimension::Force => force_un,
+            Dimension::Moment => moment_nnm,
+        })
     }
 
     /// Returns the reading at first touch: the resting whisker without a load. The contact is at arclength `contact`, in whisker lengths,
@@ -201,7 +214,19 @@ impl Reader {
     /// direction `touch`. Both angles are in radians.
     #[must_use]
     pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        Reading::of(self.channels(self.numbers(tau, &full.plain(), touch + push, push)))
+        Reading::of(self.values(tau, full, touch, push))
+    }
+
+    /// Returns the channels of [`Reader::read`], in the order of [`Reading::CHANNELS`].
+    #[must_use]
+    pub fn values(
+        &self,
+        tau: f64,
+        full: &FullState,
+        touch: f64,
+        push: f64,
+    ) -> [f64; Reading::CHANNELS.len()] {
+        self.channels(self.numbers(tau, &full.plain(), touch + push, push))
     }
 
     /// Returns the numbers of a `state` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
