@@ -20,7 +20,7 @@ use whiskmap_mechanics::shooting::{FirstVariation, LONGEST_STEP, limited};
 /// Relative difference of `tau` from the tip's within which a contact counts as on the whisker.
 const TIP_SLACK: f64 = 1e-9;
 
-/// Difference of the force ratio in the difference quotients. Their error slows convergence to this factor a step. The slid distance can
+/// Difference of the force ratio in the difference quotients. Because of their error, a step leaves at least this part of the miss. The slid distance can
 /// change by 1e-6 for a ratio of 1, so that a smaller difference would be lost in rounding.
 const RATIO_STEP: f64 = 1e-4;
 

@@ -54,8 +54,8 @@ impl PendingNets {
         }
     }
 
-    /// Completes all nets. Returns the sides with their nets, and the time of waiting for the engine. If the engine failed, there is no use for
-    /// nets, and the sides have none.
+    /// Completes all nets. Returns the sides with their nets, and the time of waiting for the engine. If the engine failed, the sides
+    /// have no nets, because the CPU engine needs none.
     pub fn finish(mut self, worker: &mut Worker) -> (Arc<[WhiskerSide]>, Duration) {
         let mut waited = Duration::ZERO;
         while let Some(nodes) = self.submitted.take() {
