@@ -4,7 +4,7 @@ use super::legs::{LegEvent, LegSample};
 use super::phase::Phase;
 use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
 use super::states::{BothSides, CourseState, PushedContact, SideStates};
-use crate::friction::{ContactPhase, held, states};
+use crate::friction::{held, states};
 use crate::trace::StateRow;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -150,10 +150,7 @@ fn sample(leg_sample: &LegSample, state: Option<CourseState>, unit: f64) -> Whis
         side: contact.map(|contact| contact.side),
         push_angle_deg: contact.map(|contact| signed_deg(contact.side, contact.push)),
         dissipated_nj: is_known.then_some(dissipated * unit),
-        sliding: state.and_then(|state| {
-            let phase = || contact?.phase.map(ContactPhase::sliding);
-            state.sliding.or_else(phase)
-        }),
+        sliding: state.and_then(|state| state.sliding),
         reason,
         ..loads
     }
