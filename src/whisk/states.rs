@@ -194,9 +194,8 @@ impl SideStates {
 
     fn at_touch(&self, row: usize) -> CourseState {
         let row = &self.sheet.rows[row];
-        let contact = row.contact.min(row.end);
-        let reading = self.reader.at_first_touch(contact, row.touch);
-        CourseState::smooth(reading, self.sheet.rod.tau(contact), 0.0)
+        let DVec2 { x: tau, y: load } = row.first_touch(&self.sheet.rod);
+        CourseState::smooth(row.read_first_touch(&self.reader), tau, load)
     }
 
     /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
