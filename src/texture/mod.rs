@@ -23,7 +23,7 @@ pub use stays::{AsperityStay, TipBin, histogram};
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, RowPush};
-use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE, WhiskEventKind};
+use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE};
 use asperities::Asperities;
 use rayon::prelude::*;
 use sample::{Held, SurfaceCrossing};
@@ -179,14 +179,6 @@ pub fn texture_until(
         .map(|(_, passage)| place.contact(passage.side, passage.obstacle, passage.push))
         .collect();
     let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
-    let kinds = passages
-        .iter()
-        .zip(&contacts)
-        .map(|((_, passage), contact)| {
-            let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));
-            passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
-        });
-    let kinds: Vec<WhiskEventKind> = kinds.collect();
 
     let samples = held.iter().zip(&moments);
     let crossed = SurfaceCrossing::first(samples.chain(held_then.iter().zip(&changes)));
@@ -200,7 +192,7 @@ pub fn texture_until(
             crossed,
             curvature_at_mm,
         ),
-        events: event::events(&passages, &kinds, &held_then, crossed),
+        events: event::events(&passages, &held_then, crossed),
         reached: asperities.len(),
     })
 }
@@ -288,11 +280,8 @@ impl Texture {
     /// Returns the energy that the detachments of the course lose, in nJ; NaN if the loss of one is not known.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
-        let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
-        let ends = self
-            .events
-            .iter()
-            .filter(|event| kinds.contains(&event.event));
+        let events = self.events.iter();
+        let ends = events.filter(|event| event.event.is_detachment());
         let lost = ends.map(|event| event.lost_nj.unwrap_or(f64::NAN));
         lost.fold(0.0, |sum, lost| sum + lost)
     }

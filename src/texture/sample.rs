@@ -72,7 +72,7 @@ pub fn samples(
     let samples = states.map(|((&time_s, &angle_deg), (phase, held))| {
         let mut has_slipped = false;
         while let Some((_, passage)) = passages.next_if(|(at, _)| *at <= time_s) {
-            has_slipped |= passage.event.is_none();
+            has_slipped |= passage.event.is_detachment();
         }
         let crosses = crossed.is_some_and(|crossing| crossing.time_s <= time_s);
         let reason = match phase {

@@ -27,8 +27,8 @@ pub struct LegEvent {
     pub time_s: f64,
     /// Angle of the base at the event, in radians.
     pub angle: f64,
-    /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
-    pub kind: Option<WhiskEventKind>,
+    /// Kind of the event.
+    pub kind: WhiskEventKind,
     /// Contact that begins, ends or changes; its push is NaN if the course is undecided from here on.
     pub contact: PushedContact,
 }
@@ -183,8 +183,8 @@ impl<'a> Legs<'a> {
             phase: None,
         };
         match event {
-            Some(WhiskEventKind::Touch) => contact = self.contacts.touch(side, push),
-            Some(WhiskEventKind::Undecided) => {}
+            WhiskEventKind::Touch => contact = self.contacts.touch(side, push),
+            WhiskEventKind::Undecided => {}
             _ => {
                 let (reached, changes) = self.contacts.to(side, push);
                 self.change(leg, obstacle, changes);
@@ -192,9 +192,9 @@ impl<'a> Legs<'a> {
                     return;
                 }
                 contact = reached;
-                self.contacts.leave(event.is_some());
+                self.contacts.leave(event == WhiskEventKind::Release);
                 if self.contacts.is_lost {
-                    kind = Some(WhiskEventKind::Undecided);
+                    kind = WhiskEventKind::Undecided;
                 }
             }
         }
@@ -210,14 +210,14 @@ impl<'a> Legs<'a> {
                 Some(_) => WhiskEventKind::Snap,
                 None => WhiskEventKind::Undecided,
             };
-            self.add(leg, angle, Some(kind), contact);
+            self.add(leg, angle, kind, contact);
         }
     }
 
     /// Adds an event.
-    fn add(&mut self, leg: &Leg, angle: f64, kind: Option<WhiskEventKind>, contact: PushedContact) {
+    fn add(&mut self, leg: &Leg, angle: f64, kind: WhiskEventKind, contact: PushedContact) {
         let push = match kind {
-            Some(WhiskEventKind::Undecided) => f64::NAN,
+            WhiskEventKind::Undecided => f64::NAN,
             _ => contact.push,
         };
         self.events.push(LegEvent {

@@ -104,10 +104,7 @@ impl Whisk {
         let mut events = self.events.iter().peekable();
         let mut lost = 0.0;
         while let Some(event) = events.next() {
-            if matches!(
-                event.event,
-                WhiskEventKind::SlipOff | WhiskEventKind::PullOff
-            ) {
+            if event.event.is_detachment() {
                 let simultaneous = events
                     .peek()
                     .filter(|next| next.angle_deg == event.angle_deg);
@@ -344,8 +341,10 @@ fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Ph
     match start {
         Some(CourseStart::Contact) => turns.held(first).next().ok_or_else(|| WhiskError::NotHeld {
             angle_deg: first_deg,
-            cb_end_deg: turns.cb_end.to_degrees(),
-            cf_end_deg: turns.cf_end.map(|end| (turns.cf_touch - end).to_degrees()),
+            cb_end_deg: turns.cb_end.push.to_degrees(),
+            cf_end_deg: turns
+                .cf_end
+                .map(|end| (turns.cf_touch - end.push).to_degrees()),
         }),
         _ => turns.begin(first).ok_or(WhiskError::Begin {
             angle_deg: first_deg,

@@ -91,13 +91,13 @@ impl BothSides {
             let push = Some(push).filter(|push| !push.is_nan());
             let event = WhiskEvent {
                 time_s: event.time_s,
-                event: event.kind.unwrap_or_else(|| self.detachment(side, 0)),
+                event: event.kind,
                 side,
                 angle_deg: event.angle.to_degrees(),
                 push_angle_deg: push.map(|push| signed_deg(side, push)),
-                snaps_deg: match event.kind {
-                    None => self.of(side).and_then(SideStates::snaps_deg),
-                    Some(_) => None,
+                snaps_deg: match event.kind.is_detachment() {
+                    true => self.of(side).and_then(SideStates::snaps_deg),
+                    false => None,
                 },
                 ..WhiskEvent::default()
             };

@@ -1,12 +1,13 @@
 //! States of a course on one side of its obstacles, in batches.
 
 use super::WhiskEventKind;
+use super::phase::ContactEnd;
 use crate::classify::TIE;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::Sheet;
-use crate::trace::{DetachmentKind, RowEnd, StableBranch, snaps_deg};
+use crate::sheet::{Crossing, Edge, Sheet};
+use crate::trace::{RowEnd, StableBranch, snaps_deg};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
@@ -108,14 +109,14 @@ impl SideStates {
         })
     }
 
-    /// Returns the push at which the whisker detaches from the pole of `row`, in radians, as a magnitude.
-    pub fn end(&self, row: usize) -> f64 {
-        self.ends[row].crossing.push
-    }
-
-    /// Returns the kind of the detachment from the pole of `row`.
-    pub fn kind(&self, row: usize) -> DetachmentKind {
-        self.ends[row].kind()
+    /// Returns the end of a push against the pole of `row`.
+    pub fn end(&self, row: usize) -> ContactEnd {
+        let Crossing { push, edge, .. } = self.ends[row].crossing;
+        let kind = match edge {
+            Edge::Fold => WhiskEventKind::SlipOff,
+            Edge::Tip => WhiskEventKind::PullOff,
+        };
+        ContactEnd { push, kind }
     }
 
     /// Returns the push angle, in degrees, up to which the first row has other stable states at its detachment.
@@ -152,7 +153,8 @@ impl SideStates {
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
         let is_inside = |contact: &PushedContact| {
             let is_stuck = matches!(contact.phase, Some(ContactPhase::Sticks(_)));
-            (contact.push > 0.0 || is_stuck && contact.push == 0.0) && contact.push < self.end(0)
+            (contact.push > 0.0 || is_stuck && contact.push == 0.0)
+                && contact.push < self.end(0).push
         };
         let inside = contacts.iter().filter(|contact| is_inside(contact));
         let queries = inside.filter_map(|contact| Some(limits.query(contact.phase?, contact.push)));
@@ -240,7 +242,7 @@ impl SideStates {
         for (state, &(row, push)) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
-            } else if push >= self.end(row) {
+            } else if push >= self.end(row).push {
                 *state = Some(self.at_end(row));
             } else if state.is_none() {
                 let distance = self.distances_mm[row];
@@ -254,7 +256,7 @@ impl SideStates {
                     Some(CourseState::smooth(reading, state.tau, state.load))
                 });
                 // The ends of the branch and of the push are computed apart.
-                let is_end = push >= self.end(row) - TIE;
+                let is_end = push >= self.end(row).push - TIE;
                 *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
                 last = Some((row, branch));
             }
@@ -315,13 +317,5 @@ impl BothSides {
             }
         }
         found
-    }
-
-    /// Returns the kind of the event at which a push against the pole of `row` ends.
-    pub fn detachment(&self, side: Side, row: usize) -> WhiskEventKind {
-        match self.of(side).map(|states| states.kind(row)) {
-            Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
-            _ => WhiskEventKind::SlipOff,
-        }
     }
 }
