@@ -12,10 +12,8 @@ use whiskmap_mechanics::rod::Side;
 /// Sample of a course, before its state is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct LegSample {
-    /// Phase of the course at the sample: free, in contact or undecided.
-    pub phase: Phase,
-    /// Contact of the whisker at the sample; `None` without one.
-    pub contact: Option<PushedContact>,
+    /// Contact of the whisker at the sample; `None` for a free whisker. The error is the reason why the sample is undecided.
+    pub held: Result<Option<PushedContact>, Undecided>,
     /// Energy that friction has dissipated since the start of the course, in `E I_base/L_w`.
     pub dissipated: f64,
 }
@@ -157,7 +155,9 @@ impl<'a> Legs<'a> {
     /// Returns side, obstacle and push of the contact at an `angle` of the base, in radians; `None` without a known one.
     fn contact(&self, angle: f64) -> Option<(Side, i32, f64)> {
         match self.phase {
-            Phase::Contact { side, obstacle } if !self.contacts.is_lost => {
+            Phase::Contact { side, obstacle }
+                if self.possible.is_empty() && !self.contacts.is_lost =>
+            {
                 let push = self.turns.push(side, obstacle, angle).max(0.0);
                 Some((side, obstacle, push))
             }
@@ -230,32 +230,20 @@ impl<'a> Legs<'a> {
 
     /// Adds the sample at the end of a leg.
     fn end(&mut self, leg: Leg) {
-        let mut sample = LegSample {
-            phase: self.phase,
-            contact: None,
-            dissipated: self.contacts.dissipated(),
+        let mut dissipated = self.contacts.dissipated();
+        let mut held = match self.phase {
+            _ if !self.possible.is_empty() => Err(Undecided::AfterGap),
+            Phase::Undecided { reason, .. } => Err(reason),
+            _ => Ok(None),
         };
-        if !self.possible.is_empty() {
-            sample.phase = Phase::Undecided {
-                obstacle: 0,
-                reason: Undecided::AfterGap,
-            };
-            self.samples.push(sample);
-            return;
-        }
         if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
-            let (contact, dissipated, changes) = self.contacts.at(side, push);
+            let (contact, taken, changes) = self.contacts.at(side, push);
             self.change(&leg, obstacle, changes);
-            sample.contact = Some(contact);
-            sample.dissipated = dissipated;
+            (held, dissipated) = (Ok(Some(contact)), taken);
         }
         if self.contacts.is_lost {
-            sample.phase = Phase::Undecided {
-                obstacle: 0,
-                reason: Undecided::Stuck,
-            };
-            sample.contact = None;
+            held = Err(Undecided::Stuck);
         }
-        self.samples.push(sample);
+        self.samples.push(LegSample { held, dissipated });
     }
 }
