@@ -20,9 +20,10 @@ pub use rows::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
 pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
+use crate::friction;
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
-use crate::whisk::states::{BothSides, RowPush};
+use crate::whisk::states::{BothSides, PushedContact};
 use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE};
 use asperities::Asperities;
 use rayon::prelude::*;
@@ -197,15 +198,8 @@ pub fn texture_until(
     })
 }
 
-/// Contact with an asperity.
-#[derive(Clone, Copy)]
-struct AsperityContact {
-    side: Side,
-    obstacle: i32,
-    row_push: RowPush,
-}
-
-type Contact = Option<AsperityContact>;
+/// Contact with an asperity, and the asperity's number as an obstacle: asperities at equal distances share a row of states.
+type Contact = Option<(PushedContact, i32)>;
 
 /// Asperities of a surface with the frame of the tip.
 struct Placed<'a> {
@@ -216,11 +210,13 @@ struct Placed<'a> {
 impl Placed<'_> {
     /// Returns the contact with an obstacle after a push in radians, as a magnitude; `None` for a push that is NaN.
     fn contact(&self, side: Side, obstacle: i32, push: f64) -> Contact {
-        (!push.is_nan()).then(|| AsperityContact {
+        let contact = || PushedContact {
             side,
-            obstacle,
-            row_push: (self.asperities.row(side, obstacle), push),
-        })
+            row: self.asperities.row(side, obstacle),
+            push,
+            phase: None,
+        };
+        (!push.is_nan()).then(|| (contact(), obstacle))
     }
 
     /// Returns the state of each of the `contacts`, at its `[time in s, angle in radians]`; `None` without contact.
@@ -232,26 +228,22 @@ impl Placed<'_> {
         curvature_at_mm: Option<f64>,
         cancel: &AtomicBool,
     ) -> Result<Vec<Option<Held>>, TextureError> {
-        let row = |contact: &Contact| contact.map(|contact| (contact.side, contact.row_push));
         let mut found = Vec::with_capacity(contacts.len());
         for chunk in contacts.chunks(STATES_AT_ONCE) {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            found.extend(states.pushed(&chunk.iter().map(row).collect::<Vec<_>>()));
+            let pushed = chunk.iter().map(|contact| Some(contact.as_ref()?.0));
+            found.extend(states.at(&pushed.collect::<Vec<_>>(), friction::states));
         }
         let held = contacts.par_iter().zip(found).zip(moments);
         let held = held.map(|((contact, state), [_, angle])| {
-            let AsperityContact {
-                side,
-                obstacle,
-                row_push,
-            } = (*contact)?;
+            let (PushedContact { side, push, .. }, obstacle) = (*contact)?;
             let (asperity, x_mm) = self.asperities.place(obstacle);
             Some(Held {
                 asperity,
                 side,
-                push: row_push.1,
+                push,
                 state: state.map(|state| {
                     let tip = self.tips.held(x_mm, side, *angle, &state.reading);
                     (state.reading, tip)

@@ -2,7 +2,7 @@
 //!
 //! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
-use super::contact::ContactTracker;
+use super::contact::{ContactTracker, pushed};
 use super::phase::{Obstacles, Passage, Phase};
 use super::states::{BothSides, PushedContact};
 use super::turns::Turns;
@@ -177,11 +177,7 @@ impl<'a> Legs<'a> {
             return;
         }
         let mut kind = event;
-        let mut contact = PushedContact {
-            side,
-            push,
-            phase: None,
-        };
+        let mut contact = pushed(side, push, None);
         match event {
             WhiskEventKind::Touch => contact = self.contacts.touch(side, push),
             WhiskEventKind::Undecided => {}
@@ -204,7 +200,9 @@ impl<'a> Legs<'a> {
     /// Adds the `changes` of the contact with an obstacle.
     fn change(&mut self, leg: &Leg, obstacle: i32, changes: Vec<PushedContact>) {
         for contact in changes {
-            let PushedContact { side, push, phase } = contact;
+            let PushedContact {
+                side, push, phase, ..
+            } = contact;
             let angle = self.turns.touch(side, obstacle) + side.sign() * push;
             let kind = match phase {
                 Some(_) => WhiskEventKind::Snap,

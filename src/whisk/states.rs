@@ -14,11 +14,13 @@ use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
 
-/// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
+/// Contact of the whisker at one time: side, pole, push and, with friction, the phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushedContact {
     /// Side of the whisker that the pole is on.
     pub side: Side,
+    /// Row of the pole in the states of the side; 0 for a single pole.
+    pub row: usize,
     /// Push since the touch, in radians, as a magnitude.
     pub push: f64,
     /// Phase of the contact; `None` without friction.
@@ -64,9 +66,6 @@ impl CourseState {
 /// Solver for states with friction, one for each query: [`states`](crate::friction::states) or [`held`](crate::friction::held). `None` where no state
 /// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
-
-/// Contact with a pole: index of the pole's row, and the push in radians, as a magnitude.
-pub type RowPush = (usize, f64);
 
 impl SideStates {
     /// Computes the sheet and the ends of the pushes on `side` for first touches at `distances_mm`, which must increase; with friction, also
@@ -143,28 +142,29 @@ impl SideStates {
             .map_or(f64::NAN, |point| point.curvature / length)
     }
 
-    /// Returns the states of `contacts` in the first row, `[contact]`; `None` where no state is found. States with friction are solved by
-    /// `solve`.
+    /// Returns the states of `contacts`, `[contact]`; `None` where no state is found. States with friction are solved by `solve`.
     fn at(&self, contacts: &[PushedContact], solve: SolveContacts) -> Vec<Option<CourseState>> {
-        let Some(limits) = self.limits(0) else {
-            let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
-            return self.without_friction(&pushes);
-        };
+        if self.limits.is_empty() {
+            return self.without_friction(contacts);
+        }
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
         let is_inside = |contact: &PushedContact| {
             let is_stuck = matches!(contact.phase, Some(ContactPhase::Sticks(_)));
             (contact.push > 0.0 || is_stuck && contact.push == 0.0)
-                && contact.push < self.end(0).push
+                && contact.push < self.end(contact.row).push
         };
         let inside = contacts.iter().filter(|contact| is_inside(contact));
-        let queries = inside.filter_map(|contact| Some(limits.query(contact.phase?, contact.push)));
+        let queries = inside.filter_map(|contact| {
+            let limits = self.limits(contact.row)?;
+            Some(limits.query(contact.phase?, contact.push))
+        });
         let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
         let states = contacts.iter().map(|contact| {
             if is_inside(contact) {
                 let state = contact.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
                 let (touch, push) = (
-                    self.sheet.rows[0].touch,
+                    self.sheet.rows[contact.row].touch,
                     self.sheet.side.sign() * contact.push,
                 );
                 return Some(CourseState {
@@ -175,8 +175,8 @@ impl SideStates {
                 });
             }
             let state = match contact.push > 0.0 {
-                true => self.at_end(0),
-                false => self.at_touch(0),
+                true => self.at_end(contact.row),
+                false => self.at_touch(contact.row),
             };
             let sliding = contact.phase.map(|phase| phase.sliding());
             Some(CourseState { sliding, ..state })
@@ -201,15 +201,15 @@ impl SideStates {
     }
 
     /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
-    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<CourseState>> {
+    fn without_friction(&self, contacts: &[PushedContact]) -> Vec<Option<CourseState>> {
         let sign = self.sheet.side.sign();
         let mut order: Vec<usize> = (0..contacts.len()).collect();
-        let of = |i: usize| contacts[i];
-        order.sort_by(|a, b| of(*a).0.cmp(&of(*b).0).then(of(*a).1.total_cmp(&of(*b).1)));
+        let (row, push) = (|i: &usize| contacts[*i].row, |i: &usize| contacts[*i].push);
+        order.sort_by(|a, b| row(a).cmp(&row(b)).then(push(a).total_cmp(&push(b))));
         let (mut places, mut targets) = (Vec::new(), Vec::new());
-        for same in order.chunk_by(|a, b| of(*a).0 == of(*b).0) {
-            let row = of(same[0]).0;
-            let pushes: Vec<f64> = same.iter().map(|i| of(*i).1).collect();
+        for same in order.chunk_by(|a, b| row(a) == row(b)) {
+            let row = row(&same[0]);
+            let pushes: Vec<f64> = same.iter().map(push).collect();
             let guesses = self.sheet.guesses(row, &pushes);
             for (i, guess) in same.iter().zip(guesses) {
                 let Some(guess) = guess else { continue };
@@ -217,7 +217,7 @@ impl SideStates {
                 targets.push(CellTarget {
                     rod: 0,
                     guess,
-                    pole: self.sheet.rows[row].pole(sign * of(*i).1),
+                    pole: self.sheet.rows[row].pole(sign * push(i)),
                 });
             }
         }
@@ -225,9 +225,9 @@ impl SideStates {
         let found = refine(Method::new(Resolution::FINE), &[&self.sheet], &targets);
         for (i, cell) in places.into_iter().zip(found) {
             if cell.outcome.is_solved() {
-                let (state, (row, push)) = (cell.state, of(i));
-                let touch = self.sheet.rows[row].touch;
-                let reading = self.reader.read(state.tau, &state.full, touch, sign * push);
+                let (state, touch) = (cell.state, self.sheet.rows[row(&i)].touch);
+                let signed_push = sign * push(&i);
+                let reading = self.reader.read(state.tau, &state.full, touch, signed_push);
                 states[i] = Some(CourseState::smooth(reading, state.tau, state.load));
             }
         }
@@ -236,10 +236,10 @@ impl SideStates {
     }
 
     /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
-    fn fill(&self, contacts: &[RowPush], states: &mut [Option<CourseState>]) {
+    fn fill(&self, contacts: &[PushedContact], states: &mut [Option<CourseState>]) {
         let side = self.sheet.side;
         let mut last: Option<(usize, Option<StableBranch>)> = None;
-        for (state, &(row, push)) in states.iter_mut().zip(contacts) {
+        for (state, &PushedContact { row, push, .. }) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
             } else if push >= self.end(row).push {
@@ -278,40 +278,20 @@ impl BothSides {
         }
     }
 
-    /// Returns the state of each push without friction, `[contact]`; `None` where there is none.
-    pub fn pushed(&self, pushes: &[Option<(Side, RowPush)>]) -> Vec<Option<CourseState>> {
-        self.by_side(pushes, SideStates::without_friction)
-    }
-
-    /// Returns the state of each of the `contacts` in the first rows, `[contact]`; `None` where there is none. States with friction are solved by
-    /// `solve`.
+    /// Returns the state of each of the `contacts`, `[contact]`; `None` where there is none. States with friction are solved by `solve`.
     pub fn at(
         &self,
         contacts: &[Option<PushedContact>],
         solve: SolveContacts,
     ) -> Vec<Option<CourseState>> {
-        let contacts = contacts
-            .iter()
-            .map(|contact| contact.map(|contact| (contact.side, contact)));
-        self.by_side(&contacts.collect::<Vec<_>>(), |states, contacts| {
-            states.at(contacts, solve)
-        })
-    }
-
-    /// Returns the state of each of the `contacts`, `[contact]`, which `solve` finds for the contacts of one side.
-    fn by_side<C: Copy>(
-        &self,
-        contacts: &[Option<(Side, C)>],
-        solve: impl Fn(&SideStates, &[C]) -> Vec<Option<CourseState>>,
-    ) -> Vec<Option<CourseState>> {
         let mut found = vec![None; contacts.len()];
         for side in Side::BOTH {
             let indexed = contacts.iter().enumerate();
             let on_side = indexed.filter_map(|(i, contact)| {
-                Some((i, contact.filter(|contact| contact.0 == side)?.1))
+                Some((i, contact.filter(|contact| contact.side == side)?))
             });
-            let (places, contacts): (Vec<usize>, Vec<C>) = on_side.unzip();
-            let states = self.of(side).map(|states| solve(states, &contacts));
+            let (places, contacts): (Vec<usize>, Vec<PushedContact>) = on_side.unzip();
+            let states = self.of(side).map(|states| states.at(&contacts, solve));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 found[i] = state;
             }
