@@ -128,7 +128,7 @@ impl Asperities {
         for (_, touch) in &mut touches {
             touch.row = row(touch);
         }
-        let states = SideStates::new(whisker, pole, side, distances).map_err(|row| {
+        let states = SideStates::new(whisker, pole, side, &distances).map_err(|row| {
             let first = touches.iter().find(|(_, touch)| touch.row == row);
             let asperity = first.map_or(0, |(number, _)| *number);
             TextureError::Unresolved { asperity, side }

@@ -239,7 +239,7 @@ impl<'a> Front<'a> {
         let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
         let cf = Row::new(&rests[1], cf_distance);
         let states = |side, distance_mm| {
-            let states = SideStates::new(whisker, pole, side, vec![distance_mm]);
+            let states = SideStates::new(whisker, pole, side, &[distance_mm]);
             states.map_err(|_| WhiskError::Unresolved(side))
         };
         let cb_states = states(Side::Cb, distance_mm)?;

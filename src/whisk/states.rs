@@ -6,9 +6,10 @@ use crate::classify::TIE;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet};
-use crate::trace::{RowEnd, StableBranch, snaps_deg};
+use crate::sheet::{Crossing, Edge, Path, Sheet, Stretch};
+use crate::trace::{RowEnd, snaps_deg};
 use glam::DVec2;
+use std::collections::BTreeMap;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
@@ -29,9 +30,7 @@ pub struct PushedContact {
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
-    whisker: Whisker,
-    pole: Pole,
-    distances_mm: Vec<f64>,
+    length_mm: f64,
     sheet: Sheet,
     reader: Reader,
     ends: Vec<RowEnd>,
@@ -74,7 +73,7 @@ impl SideStates {
         whisker: &Whisker,
         pole: &Pole,
         side: Side,
-        distances_mm: Vec<f64>,
+        distances_mm: &[f64],
     ) -> Result<Self, usize> {
         let rod = whisker.rod(pole, side);
         let method = Method::new(Resolution::FINE);
@@ -101,9 +100,7 @@ impl SideStates {
             ends,
             limits,
             reader: Reader::new(whisker.units(), &rod),
-            whisker: whisker.clone(),
-            pole: *pole,
-            distances_mm,
+            length_mm: whisker.length_mm,
             sheet,
         })
     }
@@ -130,7 +127,7 @@ impl SideStates {
 
     /// Returns the curvature of the whisker in `state` at the arclength `at_mm`, in 1/mm.
     pub fn curvature_per_mm(&self, state: &CourseState, at_mm: f64) -> f64 {
-        let length = self.whisker.length_mm;
+        let length = self.length_mm;
         let rod = Rod {
             friction: state.ratio,
             ..self.sheet.rod.clone()
@@ -235,32 +232,35 @@ impl SideStates {
         states
     }
 
-    /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
+    /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation along the row.
     fn fill(&self, contacts: &[PushedContact], states: &mut [Option<CourseState>]) {
-        let side = self.sheet.side;
-        let mut last: Option<(usize, Option<StableBranch>)> = None;
+        let mut paths: BTreeMap<usize, Option<Path>> = BTreeMap::new();
         for (state, &PushedContact { row, push, .. }) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
             } else if push >= self.end(row).push {
                 *state = Some(self.at_end(row));
             } else if state.is_none() {
-                let distance = self.distances_mm[row];
-                let branch = match last.take() {
-                    Some((last_row, branch)) if last_row == row => branch,
-                    _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
-                };
-                let followed = branch.as_ref().and_then(|branch| {
-                    let state = branch.state(side.sign() * push).ok()?;
-                    let reading = branch.read(&state);
-                    Some(CourseState::smooth(reading, state.tau, state.load))
+                let path = paths.entry(row).or_insert_with(|| {
+                    let level = self.sheet.level(row);
+                    level.continuation(level.touch(), Stretch::Stable)
                 });
-                // The ends of the branch and of the push are computed apart.
+                let followed = path.as_ref().and_then(|path| self.along(path, push));
+                // The ends of the path and of the push are computed apart.
                 let is_end = push >= self.end(row).push - TIE;
                 *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
-                last = Some((row, branch));
             }
         }
+    }
+
+    /// Returns the state without friction at `push` along the stable states of a row; `None` beyond them.
+    fn along(&self, path: &Path, push: f64) -> Option<CourseState> {
+        let signed_push = self.sheet.side.sign() * push;
+        let node = path.level.state_at_push(path.stable(), signed_push)?;
+        let DVec2 { x: tau, y: load } = node.point;
+        let touch = path.level.row.touch;
+        let reading = self.reader.read(tau, &node.full, touch, signed_push);
+        Some(CourseState::smooth(reading, tau, load))
     }
 }
 
