@@ -43,7 +43,7 @@ fn the_stable_part_has_the_states_of_the_branch() {
         let case = traced.case();
         let part = StableBranch::new(&traced.whisker, &traced.pole, traced.side, 9.0).unwrap();
         let end = branch.stable_end_deg();
-        assert_eq!(part.end_deg(), end, "{case}");
+        assert_eq!(part.stable_end_deg(), end, "{case}");
         for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {
             let push = (share * end).to_radians();
             assert_eq!(part.state(push), branch.state(push, true), "{case}");
