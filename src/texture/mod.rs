@@ -24,7 +24,7 @@ use crate::friction;
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
 use crate::whisk::states::{BothSides, PushedContact};
-use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE};
+use crate::whisk::{AngleCourse, CurvatureAtError, CurvaturePoint, STATES_AT_ONCE};
 use asperities::Asperities;
 use rayon::prelude::*;
 use sample::{Held, SurfaceCrossing};
@@ -140,7 +140,7 @@ pub fn texture_until(
     cancel: &AtomicBool,
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
-    CurvatureAtError::check(whisker, curvature_at_mm)?;
+    let point = CurvaturePoint::of(whisker, curvature_at_mm)?;
     let angles = course.angles_deg();
     if let Some(index) = angles
         .iter()
@@ -169,7 +169,7 @@ pub fn texture_until(
         place.contact(side, obstacle, push)
     });
     let contacts: Vec<Contact> = contacts.collect();
-    let held = place.held(&states, &contacts, &moments, curvature_at_mm, cancel)?;
+    let held = place.held(&states, &contacts, &moments, point, cancel)?;
 
     let changes: Vec<[f64; 2]> = passages
         .iter()
@@ -191,7 +191,7 @@ pub fn texture_until(
             &held,
             &place.tips,
             crossed,
-            curvature_at_mm,
+            point,
         ),
         events: event::events(&passages, &held_then, crossed),
         reached: asperities.len(),
@@ -225,7 +225,7 @@ impl Placed<'_> {
         states: &BothSides,
         contacts: &[Contact],
         moments: &[[f64; 2]],
-        curvature_at_mm: Option<f64>,
+        point: Option<CurvaturePoint>,
         cancel: &AtomicBool,
     ) -> Result<Vec<Option<Held>>, TextureError> {
         let mut found = Vec::with_capacity(contacts.len());
@@ -248,8 +248,8 @@ impl Placed<'_> {
                     let tip = self.tips.held(x_mm, side, *angle, &state.reading);
                     (state.reading, tip)
                 }),
-                curvature_per_mm: state.zip(curvature_at_mm).and_then(|(state, at_mm)| {
-                    Some(states.of(side)?.curvature_per_mm(&state, at_mm))
+                curvature_per_mm: state.zip(point).and_then(|(state, point)| {
+                    Some(states.of(side)?.curvature_per_mm(&state, point.at_mm))
                 }),
             })
         });

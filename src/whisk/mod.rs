@@ -19,8 +19,8 @@ mod turns;
 
 pub use course::{AngleCourse, CourseError};
 pub use gaps::CourseGap;
+pub(crate) use options::CurvaturePoint;
 pub use options::{CourseStart, CurvatureAtError, WhiskOptions};
-use readings::CurvaturePoint;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 pub use shapes::CourseShapes;
@@ -195,11 +195,11 @@ pub fn whisk_with(
     course: &AngleCourse,
     options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
-    CurvatureAtError::check(whisker, options.curvature_at_mm)?;
+    let point = CurvaturePoint::of(whisker, options.curvature_at_mm)?;
     let front = Front::new(whisker, pole, distance_mm)?;
     let gaps = course.gaps(options.bridge_s);
     let legs = front.follow(course, &gaps, options)?;
-    let (mut samples, events) = front.states(&legs, options)?;
+    let (mut samples, events) = front.states(&legs, point, options)?;
     let known = course.known();
     for (&i, sample) in known.iter().zip(&mut samples) {
         let (time_s, angle_deg) = (course.times_s[i], course.angles_deg[i]);
@@ -301,13 +301,9 @@ impl<'a> Front<'a> {
     fn states(
         &self,
         legs: &Legs,
+        point: Option<CurvaturePoint>,
         options: &WhiskOptions,
     ) -> Result<(Vec<WhiskSample>, Vec<WhiskEvent>), WhiskError> {
-        let rest = Rest::new(&self.whisker.rod(&Pole::smooth(0.0), Side::Cb));
-        let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
-            at_mm,
-            at_rest_per_mm: rest.curvature(at_mm / self.whisker.length_mm) / self.whisker.length_mm,
-        });
         let unit_nj = self.whisker.units().moment_nnm;
         let mut samples = Vec::with_capacity(legs.samples.len());
         for chunk in legs.samples.chunks(STATES_AT_ONCE) {

@@ -1,6 +1,7 @@
 //! Samples and events of a course with their states.
 
 use super::legs::{LegEvent, LegSample};
+use super::options::CurvaturePoint;
 use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
 use super::states::{BothSides, CourseState, PushedContact, SideStates};
 use crate::friction::{held, states};
@@ -8,15 +9,6 @@ use crate::trace::StateRow;
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap_mechanics::rod::Side;
-
-/// Point of the whisker at which samples have the curvature.
-#[derive(Clone, Copy)]
-pub struct CurvaturePoint {
-    /// Arclength from the base, in mm.
-    pub at_mm: f64,
-    /// Curvature there at rest, in 1/mm.
-    pub at_rest_per_mm: f64,
-}
 
 impl WhiskSample {
     /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on a pole with this centre and
