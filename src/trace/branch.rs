@@ -79,17 +79,16 @@ impl Branch {
     /// # Errors
     /// Fails as [`StableBranch::new`] or [`Branch::new`] does, or if no such state exists.
     pub fn at_push(
-        (whisker, pole, side): (&Whisker, &Pole, Side),
+        whisker_side: (&Whisker, &Pole, Side),
         distance_mm: f64,
         push: f64,
         stable: bool,
     ) -> Result<(StableBranch, StateAtPush), NoState> {
-        if stable {
-            let branch = StableBranch::new(whisker, pole, side, distance_mm)?;
-            let state = branch.state(push)?;
-            return Ok((branch, state));
-        }
-        let branch = Self::new(whisker, pole, side, distance_mm)?;
+        let stretch = match stable {
+            true => Stretch::Stable,
+            false => Stretch::PastFold,
+        };
+        let branch = Self(StableBranch::followed(whisker_side, distance_mm, stretch)?);
         let state = branch.state(push, stable)?;
         Ok((branch.0, state))
     }
