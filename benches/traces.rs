@@ -9,7 +9,7 @@ use std::hint::black_box;
 use whiskmap::Side;
 use whiskmap::scene::{Scene, Whisker};
 use whiskmap::sensitivity::{Variable, detachments};
-use whiskmap::trace::{Branch, WhiskerShape, corner, curve};
+use whiskmap::trace::{Branch, corner, curve};
 
 fn main() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
@@ -69,7 +69,5 @@ fn main() {
         let branch = Branch::new(black_box(whisker), pole, Side::Cb, 10.0);
         branch.and_then(|branch| branch.points(200))
     });
-    group.time("shape, 200 places", || {
-        WhiskerShape::new(&branch, black_box(&state), 200)
-    });
+    group.time("shape, 200 places", || branch.shape(black_box(&state), 200));
 }

@@ -7,7 +7,7 @@ use whiskmap::classify::Status;
 use whiskmap::fit::fit;
 use whiskmap::measured::MeasuredPoints;
 use whiskmap::scene::{Curvature, Parameter, Pole, Scene, Whisker};
-use whiskmap::trace::{Branch, BranchMark, DetachmentKind, NoState, WhiskerShape, curve};
+use whiskmap::trace::{Branch, BranchMark, DetachmentKind, NoState, curve};
 use whiskmap::{MapEngine, Options, Regime, Side, map};
 
 /// Perfect cone of 16 mm with a base radius of 33.5 um, straight, in a follicle.
@@ -138,7 +138,7 @@ fn the_base_turns_and_the_spring_stores_energy() {
         );
     }
     let state = branch.state(40f64.to_radians(), true).unwrap();
-    let shape = WhiskerShape::new(&branch, &state, 200);
+    let shape = branch.shape(&state, 200);
     let turn = (shape.state.base_moment_nnm / stiffness).to_degrees();
     assert!(turn > 5.0, "{turn}");
     assert!((shape.points[0].angle_deg - (turn - 40.0)).abs() < 1e-9);

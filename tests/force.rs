@@ -11,7 +11,7 @@ use whiskmap::input::CsvTable;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::random::RandomStream;
 use whiskmap::scene::{FrameDeviations, Scene, Whisker};
-use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, WhiskerShape, curve};
+use whiskmap::trace::{Branch, BranchPoint, NoState, WhiskerPart, curve};
 use whiskmap::yields::StrainMark;
 
 /// The frame of a stable or unstable state: its curvature at the point next to `part` of the length, and its contact. With the frame, the
@@ -23,7 +23,7 @@ fn frame_of(
     part: f64,
 ) -> Result<(CurvatureFrame, BranchPoint), NoState> {
     let state = branch.state(push_deg.to_radians(), is_stable)?;
-    let shape = WhiskerShape::new(branch, &state, 101);
+    let shape = branch.shape(&state, 101);
     // From the frame of the pole to that of the base, which is turned by -push.
     let (sin, cos) = push_deg.to_radians().sin_cos();
     let in_base = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];

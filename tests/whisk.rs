@@ -3,7 +3,7 @@
 use crate::shipped;
 use whiskmap::mechanics::rod::{Rest, Side};
 use whiskmap::scene::{Parameter, Scene};
-use whiskmap::trace::{Branch, DetachmentKind, ShapePoint, WhiskerPart, WhiskerShape, curve};
+use whiskmap::trace::{Branch, DetachmentKind, ShapePoint, WhiskerPart, curve};
 use whiskmap::whisk::{
     AngleCourse, CourseError, CourseShapes, CourseStart, Undecided, Whisk, WhiskError, WhiskEvent,
     WhiskEventKind, WhiskOptions, WhiskRegime, whisk, whisk_with,
@@ -471,7 +471,7 @@ fn contacts_and_curvatures_are_those_of_shapes() {
             let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
             let push = sample.push_angle_deg.unwrap();
             let state = branch.state(push.to_radians(), true).unwrap();
-            let shape = WhiskerShape::new(&branch, &state, 101);
+            let shape = branch.shape(&state, 101);
             let contact = shape
                 .points
                 .iter()

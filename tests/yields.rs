@@ -9,7 +9,7 @@ use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::plan::Plan;
 use whiskmap::scene::{Parameter, Scene, Whisker, WhiskerRow};
 use whiskmap::sheet::Sheet;
-use whiskmap::trace::{Branch, BranchPoint, WhiskerShape, corner, curve};
+use whiskmap::trace::{Branch, BranchPoint, corner, curve};
 use whiskmap::yields::{PushMark, StrainMark, YieldMark};
 use whiskmap::{Channel, Channels, Side};
 
@@ -42,7 +42,7 @@ const PERFECT: &str = "base_radius_um = 30\ntip_radius_um = 0\n[pole]\nradius_mm
 /// Largest strain of a straight whisker in one state, from its bent shape alone: radius times curvature at 20,001 points.
 fn strain_of_shape(whisker: &Whisker, branch: &Branch, push_deg: f64) -> f64 {
     let state = branch.state(push_deg.to_radians(), true).unwrap();
-    let shape = WhiskerShape::new(branch, &state, 20_001);
+    let shape = branch.shape(&state, 20_001);
     let strains = shape.points.iter().map(|point| {
         let part = point.arc_length_mm / whisker.length_mm;
         let radius_um = whisker.base_radius_um * (1.0 - whisker.taper() * part);

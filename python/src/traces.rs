@@ -12,7 +12,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap::Side;
 use whiskmap::scene::{Scene, SweepPlace};
-use whiskmap::trace::{BranchPoint, Detachment, ShapePoint, WhiskerShape};
+use whiskmap::trace::{Branch, BranchPoint, Detachment, ShapePoint};
 use whiskmap::yields::{PushMark, YieldMark};
 use whiskmap::{Options, branch as branch_of};
 
@@ -91,9 +91,11 @@ pub fn shape<'py>(
     }
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let branch = branch_of(&scene, distance_mm, Side::of_push(push_angle_deg))?;
-        let state = branch.state(push_angle_deg.to_radians(), stable)?;
-        let shape = WhiskerShape::new(&branch, &state, points);
+        let side = Side::of_push(push_angle_deg);
+        let pushed = (&scene.whisker, &scene.pole, side);
+        let push = push_angle_deg.to_radians();
+        let (branch, state) = Branch::at_push(pushed, distance_mm, push, stable)?;
+        let shape = branch.shape(&state, points);
         let marks = YieldMark::of_rows(
             &scene.whisker,
             shape.points.iter().map(|point| point.strain),

@@ -189,12 +189,10 @@ impl WhiskerSide {
     #[must_use]
     pub fn first_touch(&self, row: usize, steps: u32) -> Cell {
         let row = &self.sheet.rows[row];
-        let reading = self
-            .reader
-            .at_first_touch(row.contact.min(row.end), row.touch);
+        let values = row.read_first_touch(&self.reader).channels();
         Cell {
             residual: 0.0,
-            values: reading.channels().map(|value| value as f32),
+            values: values.map(|value| value as f32),
             point: row.first_touch(&self.sheet.rod),
             ..Cell::new(Outcome::Solved, steps)
         }

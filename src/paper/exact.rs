@@ -4,7 +4,7 @@ use super::check::{CLOSED, Check, EXACT, end, near};
 use super::elastica::{elastica, fold};
 use super::whiskers::{CONE, CYLINDER, POLE, whisker};
 use crate::scene::{Pole, Whisker};
-use crate::trace::{Branch, DetachmentKind, NoState, StateAtPush, corner, curve};
+use crate::trace::{DetachmentKind, NoState, StableBranch, StateAtPush, corner, curve};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Reading;
 
@@ -24,8 +24,8 @@ fn pushed(
     distance_mm: f64,
     push: f64,
 ) -> Result<(StateAtPush, Reading), NoState> {
-    let branch = Branch::new(whisker, &POINT, Side::Cb, distance_mm)?;
-    let state = branch.state(push, true)?;
+    let branch = StableBranch::new(whisker, &POINT, Side::Cb, distance_mm)?;
+    let state = branch.state(push)?;
     Ok((state, branch.read(&state)))
 }
 

@@ -32,8 +32,8 @@ pub use variable::Variable;
 use crate::scene::{Parameter, Pole, Whisker};
 use crate::sheet::{Crossing, Sheet};
 use crate::trace::{
-    self, Branch, BranchPoint, Detachment, EndDetail, FINER, NoState, PushedWhisker, SweptSide,
-    crossings,
+    self, Branch, BranchPoint, Detachment, EndDetail, FINER, NoState, PushedWhisker, StableBranch,
+    SweptSide, crossings,
 };
 use differentiated::Differentiated;
 use std::sync::atomic::AtomicBool;
@@ -239,8 +239,8 @@ pub fn state(
     variables: &[Variable],
 ) -> Result<StateDerivatives, NoState> {
     let side = Side::of_push(push_angle_deg);
-    let branch = Branch::new(whisker, pole, side, distance_mm)?;
-    let state = branch.state(push_angle_deg.to_radians(), true)?;
+    let branch = StableBranch::new(whisker, pole, side, distance_mm)?;
+    let state = branch.state(push_angle_deg.to_radians())?;
     let differentiated = Differentiated::new(FINER, whisker, pole, side, variables);
     Ok(StateDerivatives {
         by: differentiated.of_state(&state, distance_mm),

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Rod};
-use whiskmap_mechanics::shooting::ShootingMap;
+use whiskmap_mechanics::shooting::{Reader, Reading, ShootingMap};
 
 /// Distance beyond the tip, in whisker lengths, within which first touch counts as at the tip. Rounding of a distance in millimetres, of
 /// its division by the length and of the rest shape is a hundred times smaller.
@@ -51,6 +51,12 @@ impl Row {
     #[must_use]
     pub fn first_touch(&self, rod: &Rod) -> DVec2 {
         DVec2::new(rod.tau(self.contact).min(rod.tau_tip()), 0.0)
+    }
+
+    /// Returns the values of the state at first touch of a row, in the units of `reader`.
+    #[must_use]
+    pub fn read_first_touch(&self, reader: &Reader) -> Reading {
+        reader.at_first_touch(self.contact.min(self.end), self.touch)
     }
 
     /// Returns the pole's centre in the frame of the base, in whisker lengths, after the base has turned by `push` radians since first

@@ -4,7 +4,7 @@ use super::TextureError;
 use super::tip::TipFrame;
 use crate::scene::{Pole, Surface, Whisker};
 use crate::sheet::Row;
-use crate::whisk::phase::{Obstacles, Phase, ROUNDING};
+use crate::whisk::phase::{ContactEnd, Obstacles, Phase, ROUNDING};
 use crate::whisk::states::{BothSides, SideStates};
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -32,8 +32,8 @@ struct AsperityTouch {
     distance_mm: Option<f64>,
     /// Row of the states of this side.
     row: usize,
-    /// Largest push, in radians, as a magnitude.
-    end: f64,
+    /// End of a push; `None` if the resting whisker does not reach the asperity.
+    end: Option<ContactEnd>,
 }
 
 impl Asperities {
@@ -61,7 +61,7 @@ impl Asperities {
                     angle: row.touch - direction + tips.tangent,
                     distance_mm,
                     row: 0,
-                    end: f64::NAN,
+                    end: None,
                 }
             });
             let is_reached = cb.distance_mm.or(cf.distance_mm).is_some();
@@ -128,13 +128,13 @@ impl Asperities {
         for (_, touch) in &mut touches {
             touch.row = row(touch);
         }
-        let states = SideStates::new(whisker, pole, side, distances).map_err(|row| {
+        let states = SideStates::new(whisker, pole, side, &distances).map_err(|row| {
             let first = touches.iter().find(|(_, touch)| touch.row == row);
             let asperity = first.map_or(0, |(number, _)| *number);
             TextureError::Unresolved { asperity, side }
         })?;
         for (_, touch) in touches {
-            touch.end = states.end(touch.row);
+            touch.end = Some(states.end(touch.row));
         }
         Ok(Some(states))
     }
@@ -185,8 +185,7 @@ impl Obstacles for Asperities {
         self.of(side, obstacle).map_or(beyond, |touch| touch.angle)
     }
 
-    fn end(&self, side: Side, obstacle: i32) -> Option<f64> {
-        let touch = self.of(side, obstacle)?;
-        touch.distance_mm.and(Some(touch.end))
+    fn end(&self, side: Side, obstacle: i32) -> Option<ContactEnd> {
+        self.of(side, obstacle)?.end
     }
 }

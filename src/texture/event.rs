@@ -10,7 +10,6 @@ use whiskmap_mechanics::rod::Side;
 /// Returns the events of a course up to the first crossing, `[event]`.
 pub fn events(
     passages: &[(f64, Passage)],
-    kinds: &[WhiskEventKind],
     held: &[Option<Held>],
     crossed: Option<SurfaceCrossing>,
 ) -> Vec<TextureEvent> {
@@ -18,8 +17,7 @@ pub fn events(
     let is_before = |time_s: f64| crossed.is_none_or(|crossing| time_s < crossing.time_s);
     let before = (0..passages.len()).take_while(|i| is_before(passages[*i].0));
     let events = before.map(|i| {
-        let ((time_s, passage), event) = (&passages[i], kinds[i]);
-        let is_detachment = matches!(event, WhiskEventKind::SlipOff | WhiskEventKind::PullOff);
+        let (time_s, passage) = &passages[i];
         // A whisker that is held or undecided at once after a detachment has the energy of that state, known or not.
         let next = passages.get(i + 1);
         let after = match next.is_some_and(|(_, next)| next.angle == passage.angle) {
@@ -28,8 +26,13 @@ pub fn events(
         };
         let lost = energy(i).zip(after).map(|(before, after)| before - after);
         TextureEvent {
-            lost_nj: lost.filter(|_| is_detachment),
-            ..TextureEvent::new(event, [*time_s, passage.angle], passage.side, held[i])
+            lost_nj: lost.filter(|_| passage.event.is_detachment()),
+            ..TextureEvent::new(
+                passage.event,
+                [*time_s, passage.angle],
+                passage.side,
+                held[i],
+            )
         }
     });
     let end = crossed.map(|crossing| {

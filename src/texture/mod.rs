@@ -20,10 +20,11 @@ pub use rows::{NoTextureState, TextureEvent, TexturePhase, TextureSample};
 pub use shape::shape;
 pub use stays::{AsperityStay, TipBin, histogram};
 
+use crate::friction;
 use crate::scene::{SceneError, Surface, Whisker};
 use crate::whisk::phase::{Obstacles, Phase};
-use crate::whisk::states::{BothSides, RowPush};
-use crate::whisk::{AngleCourse, CurvatureAtError, STATES_AT_ONCE, WhiskEventKind};
+use crate::whisk::states::{BothSides, PushedContact};
+use crate::whisk::{AngleCourse, CurvatureAtError, CurvaturePoint, STATES_AT_ONCE};
 use asperities::Asperities;
 use rayon::prelude::*;
 use sample::{Held, SurfaceCrossing};
@@ -139,7 +140,7 @@ pub fn texture_until(
     cancel: &AtomicBool,
 ) -> Result<Texture, TextureError> {
     surface.check(whisker)?;
-    CurvatureAtError::check(whisker, curvature_at_mm)?;
+    let point = CurvaturePoint::of(whisker, curvature_at_mm)?;
     let angles = course.angles_deg();
     if let Some(index) = angles
         .iter()
@@ -168,7 +169,7 @@ pub fn texture_until(
         place.contact(side, obstacle, push)
     });
     let contacts: Vec<Contact> = contacts.collect();
-    let held = place.held(&states, &contacts, &moments, curvature_at_mm, cancel)?;
+    let held = place.held(&states, &contacts, &moments, point, cancel)?;
 
     let changes: Vec<[f64; 2]> = passages
         .iter()
@@ -179,14 +180,6 @@ pub fn texture_until(
         .map(|(_, passage)| place.contact(passage.side, passage.obstacle, passage.push))
         .collect();
     let held_then = place.held(&states, &contacts, &changes, None, cancel)?;
-    let kinds = passages
-        .iter()
-        .zip(&contacts)
-        .map(|((_, passage), contact)| {
-            let end = contact.map(|contact| states.detachment(contact.side, contact.row_push.0));
-            passage.event.or(end).unwrap_or(WhiskEventKind::Undecided)
-        });
-    let kinds: Vec<WhiskEventKind> = kinds.collect();
 
     let samples = held.iter().zip(&moments);
     let crossed = SurfaceCrossing::first(samples.chain(held_then.iter().zip(&changes)));
@@ -198,22 +191,15 @@ pub fn texture_until(
             &held,
             &place.tips,
             crossed,
-            curvature_at_mm,
+            point,
         ),
-        events: event::events(&passages, &kinds, &held_then, crossed),
+        events: event::events(&passages, &held_then, crossed),
         reached: asperities.len(),
     })
 }
 
-/// Contact with an asperity.
-#[derive(Clone, Copy)]
-struct AsperityContact {
-    side: Side,
-    obstacle: i32,
-    row_push: RowPush,
-}
-
-type Contact = Option<AsperityContact>;
+/// Contact with an asperity, and the asperity's number as an obstacle: asperities at equal distances share a row of states.
+type Contact = Option<(PushedContact, i32)>;
 
 /// Asperities of a surface with the frame of the tip.
 struct Placed<'a> {
@@ -224,11 +210,13 @@ struct Placed<'a> {
 impl Placed<'_> {
     /// Returns the contact with an obstacle after a push in radians, as a magnitude; `None` for a push that is NaN.
     fn contact(&self, side: Side, obstacle: i32, push: f64) -> Contact {
-        (!push.is_nan()).then(|| AsperityContact {
+        let contact = || PushedContact {
             side,
-            obstacle,
-            row_push: (self.asperities.row(side, obstacle), push),
-        })
+            row: self.asperities.row(side, obstacle),
+            push,
+            phase: None,
+        };
+        (!push.is_nan()).then(|| (contact(), obstacle))
     }
 
     /// Returns the state of each of the `contacts`, at its `[time in s, angle in radians]`; `None` without contact.
@@ -237,35 +225,31 @@ impl Placed<'_> {
         states: &BothSides,
         contacts: &[Contact],
         moments: &[[f64; 2]],
-        curvature_at_mm: Option<f64>,
+        point: Option<CurvaturePoint>,
         cancel: &AtomicBool,
     ) -> Result<Vec<Option<Held>>, TextureError> {
-        let row = |contact: &Contact| contact.map(|contact| (contact.side, contact.row_push));
         let mut found = Vec::with_capacity(contacts.len());
         for chunk in contacts.chunks(STATES_AT_ONCE) {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            found.extend(states.pushed(&chunk.iter().map(row).collect::<Vec<_>>()));
+            let pushed = chunk.iter().map(|contact| Some(contact.as_ref()?.0));
+            found.extend(states.at(&pushed.collect::<Vec<_>>(), friction::states));
         }
         let held = contacts.par_iter().zip(found).zip(moments);
         let held = held.map(|((contact, state), [_, angle])| {
-            let AsperityContact {
-                side,
-                obstacle,
-                row_push,
-            } = (*contact)?;
+            let (PushedContact { side, push, .. }, obstacle) = (*contact)?;
             let (asperity, x_mm) = self.asperities.place(obstacle);
             Some(Held {
                 asperity,
                 side,
-                push: row_push.1,
+                push,
                 state: state.map(|state| {
                     let tip = self.tips.held(x_mm, side, *angle, &state.reading);
                     (state.reading, tip)
                 }),
-                curvature_per_mm: state.zip(curvature_at_mm).and_then(|(state, at_mm)| {
-                    Some(states.of(side)?.curvature_per_mm(&state, at_mm))
+                curvature_per_mm: state.zip(point).and_then(|(state, point)| {
+                    Some(states.of(side)?.curvature_per_mm(&state, point.at_mm))
                 }),
             })
         });
@@ -288,11 +272,8 @@ impl Texture {
     /// Returns the energy that the detachments of the course lose, in nJ; NaN if the loss of one is not known.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
-        let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
-        let ends = self
-            .events
-            .iter()
-            .filter(|event| kinds.contains(&event.event));
+        let events = self.events.iter();
+        let ends = events.filter(|event| event.event.is_detachment());
         let lost = ends.map(|event| event.lost_nj.unwrap_or(f64::NAN));
         lost.fold(0.0, |sum, lost| sum + lost)
     }

@@ -4,7 +4,7 @@ use super::rows::{NoTextureState, TexturePhase, TextureSample};
 use super::tip::{TipFrame, TipPlace};
 use crate::trace::StateRow;
 use crate::whisk::phase::{Passage, Phase};
-use crate::whisk::{AngleCourse, Undecided, signed_deg};
+use crate::whisk::{AngleCourse, CurvaturePoint, Undecided, signed_deg};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Reading;
 
@@ -64,7 +64,7 @@ pub fn samples(
     held: &[Option<Held>],
     tips: &TipFrame,
     crossed: Option<SurfaceCrossing>,
-    curvature_at_mm: Option<f64>,
+    point: Option<CurvaturePoint>,
 ) -> Vec<TextureSample> {
     let mut passages = passages.iter().peekable();
     let times = course.times_s().iter().zip(course.angles_deg());
@@ -72,7 +72,7 @@ pub fn samples(
     let samples = states.map(|((&time_s, &angle_deg), (phase, held))| {
         let mut has_slipped = false;
         while let Some((_, passage)) = passages.next_if(|(at, _)| *at <= time_s) {
-            has_slipped |= passage.event.is_none();
+            has_slipped |= passage.event.is_detachment();
         }
         let crosses = crossed.is_some_and(|crossing| crossing.time_s <= time_s);
         let reason = match phase {
@@ -104,7 +104,7 @@ pub fn samples(
         };
         let contact = tip.and_then(|tip| tip.contact_mm);
         let curvature_per_mm = match is_free {
-            true => curvature_at_mm.map(|at_mm| tips.curvature_at_rest(at_mm)),
+            true => point.map(|point| point.at_rest_per_mm),
             false => held.and_then(|held| held.curvature_per_mm),
         };
         TextureSample {

@@ -120,11 +120,6 @@ impl TipFrame {
         self.descends(from, &middle, between) || self.descends(&middle, to, between)
     }
 
-    /// Returns the curvature of the whisker at rest at the arclength `at_mm`, in 1/mm.
-    pub fn curvature_at_rest(&self, at_mm: f64) -> f64 {
-        self.rest.curvature(at_mm / self.length_mm) / self.length_mm
-    }
-
     fn place(&self, tip: DVec2, contact_mm: Option<DVec2>, crosses: bool) -> TipPlace {
         TipPlace {
             x_mm: tip.x,

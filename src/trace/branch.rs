@@ -1,30 +1,33 @@
 //! Solution branch at one pole: stable states from first touch to the fold, then unstable states.
 
-use super::columns::{StateRow, row};
+use super::columns::row;
 use super::curve::snaps_deg;
 use super::resample::targets;
-use super::{BranchMark, FINER, NoState, StateAtPush};
-use crate::friction::{ContactHistory, Sliding};
+use super::{BranchMark, NoState, StableBranch, StateAtPush};
+use crate::friction::Sliding;
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{CurveNode, Edge, LevelCurve, Path, Row, Sheet, Stretch};
+use crate::sheet::{CurveNode, Edge, LevelCurve, Path, Sheet, Stretch};
 use serde::Serialize;
+use std::ops::Deref;
 use std::sync::atomic::{AtomicBool, Ordering};
-use whiskmap_mechanics::rod::{Rest, Side, Units};
-use whiskmap_mechanics::shooting::PeakStrain;
-use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
+use whiskmap_mechanics::rod::Side;
 
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;
 
 /// Branch: all states of one whisker at one pole that are connected with first touch. Unstable states beyond nine turns of the base are left
 /// out, and the last point then has no mark.
+///
+/// A branch has the methods of its stable part, which also read and draw unstable states.
 #[derive(Clone, Debug)]
-pub struct Branch {
-    pub(super) path: Path,
-    pub(super) units: Units,
-    /// Sliding history of the contact; `None` without friction, and if it is not found.
-    pub(super) history: Option<ContactHistory>,
-    distance_mm: f64,
+pub struct Branch(StableBranch);
+
+impl Deref for Branch {
+    type Target = StableBranch;
+
+    fn deref(&self) -> &StableBranch {
+        &self.0
+    }
 }
 
 row! {
@@ -68,53 +71,44 @@ impl Branch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Self::followed((whisker, pole, side), distance_mm, Stretch::PastFold)
+        StableBranch::followed((whisker, pole, side), distance_mm, Stretch::PastFold).map(Self)
     }
 
-    /// The branch along a `stretch` of its level curve from first touch.
-    pub(super) fn followed(
-        (whisker, pole, side): (&Whisker, &Pole, Side),
+    /// Computes the stable or the unstable state of `whisker` at `pole` at the signed `push`, in radians, with the part of the branch up to it.
+    ///
+    /// # Errors
+    /// Fails as [`StableBranch::new`] or [`Branch::new`] does, or if no such state exists.
+    pub fn at_push(
+        whisker_side: (&Whisker, &Pole, Side),
         distance_mm: f64,
-        stretch: Stretch,
-    ) -> Result<Self, NoState> {
-        let rod = whisker.rod(pole, side);
-        let rest = Rest::new(&rod);
-        let row = Row::new(&rest, distance_mm / whisker.length_mm);
-        if !row.is_reached() {
-            let reach_mm = rest.reach() * whisker.length_mm;
-            return Err(NoState::OutOfReach { reach_mm });
-        }
-        let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
-        let path = level.continuation(level.touch(), stretch);
-        // From first touch at the tip there may be no state to continue to.
-        let none = match row.is_at_reach() {
-            true => NoState::PulledOff { at_deg: 0.0 },
-            false => NoState::Failed { push_deg: 0.0 },
+        push: f64,
+        stable: bool,
+    ) -> Result<(StableBranch, StateAtPush), NoState> {
+        let stretch = match stable {
+            true => Stretch::Stable,
+            false => Stretch::PastFold,
         };
-        let path = path.ok_or(none)?;
-        if path.fold.is_none() && path.end.is_none() {
-            return Err(NoState::BeyondTurns);
+        let branch = Self(StableBranch::followed(whisker_side, distance_mm, stretch)?);
+        let state = branch.state(push, stable)?;
+        Ok((branch.0, state))
+    }
+
+    /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
+    ///
+    /// # Errors
+    /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
+    pub fn state(&self, push: f64, stable: bool) -> Result<StateAtPush, NoState> {
+        if stable {
+            return self.0.state(push);
         }
-        let has_friction = rod.friction != 0.0;
-        Ok(Self {
-            history: has_friction.then(|| ContactHistory::along(&path)).flatten(),
-            path,
-            units: whisker.units(),
-            distance_mm,
-        })
-    }
-
-    /// Returns the row of the branch: distance and direction of the pole.
-    #[must_use]
-    pub fn row(&self) -> &Row {
-        &self.path.level.row
-    }
-
-    /// Returns the signed push angle at which the stable states end, at the fold or at the tip, in degrees.
-    #[must_use]
-    pub fn stable_end_deg(&self) -> f64 {
-        let stable = self.path.stable();
-        stable[stable.len() - 1].push.to_degrees()
+        let unstable = self.path.unstable().ok_or_else(|| NoState::NoFold {
+            at_deg: self.stable_end_deg(),
+        })?;
+        let not_there = |ends: [f64; 2]| NoState::NotUnstable {
+            ends_deg: ends.map(f64::to_degrees),
+        };
+        let node = self.node_at(unstable, push, not_there)?;
+        Ok(self.beyond_fold(&node))
     }
 
     /// Returns `count` points of the branch, at least 3, among them the fold. The points are evenly spaced on each side of the fold.
@@ -186,7 +180,7 @@ impl Branch {
             go_on()?;
             states.extend(self.pushed(nodes)?);
         }
-        states.extend(self.beyond_fold(&nodes[stable..]));
+        states.extend(nodes[stable..].iter().map(|node| self.beyond_fold(node)));
         let mut peaks = Vec::with_capacity(states.len());
         for states in states.chunks(POINTS_AT_ONCE) {
             go_on()?;
@@ -194,14 +188,13 @@ impl Branch {
         }
         let is_detachment =
             |mark: &BranchMark| matches!(mark, BranchMark::SlipOff | BranchMark::PullOff);
-        let snaps_deg = self.snaps_deg();
         let points = marked.iter().zip(states.iter().zip(peaks));
         let points = points.map(|((_, mark), (state, peak))| {
             go_on()?;
             let mark = mark.filter(|mark| self.detaches() || !is_detachment(mark));
             let point = BranchPoint {
                 mark,
-                snaps_deg: mark.filter(is_detachment).and(snaps_deg),
+                snaps_deg: mark.filter(is_detachment).and_then(|_| self.snaps_deg()),
                 ..self.point(state, peak)
             };
             Ok((*state, point))
@@ -218,53 +211,10 @@ impl Branch {
         snaps_deg(&Sheet::of_ends(*method, rod, *side, &[distance]), 0)
     }
 
-    /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.
-    fn detaches(&self) -> bool {
-        let end = self.stable_end_deg().to_radians().abs();
-        let history = self.history.as_ref();
-        let sliding = history.and_then(|history| history.sliding_at_end(end));
-        sliding.is_none_or(|sliding| sliding == Sliding::Tip)
-    }
-
-    /// Returns the error of a failed continuation or corrector.
-    pub(super) fn failed(&self) -> NoState {
-        let nodes = &self.path.nodes;
-        let push_deg = nodes[nodes.len() - 1].push.to_degrees();
-        NoState::Failed { push_deg }
-    }
-
-    /// Returns the largest bending strains of `states`, `[state]`.
-    pub(super) fn peaks(&self, states: &[StateAtPush]) -> Vec<PeakStrain> {
-        let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
-        let conditions = rods
-            .iter()
-            .zip(states)
-            .map(|(rod, state)| InitialCondition {
-                rod,
-                tau: state.tau,
-                load: state.load,
-            });
-        Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
-    }
-
-    /// Returns `state` with its largest bending strain as a point without a mark.
-    pub(super) fn point(&self, state: &StateAtPush, peak: PeakStrain) -> BranchPoint {
-        let LevelCurve { side, row, .. } = &self.path.level;
-        let rod = &self.rod(state.ratio);
-        BranchPoint {
-            distance_mm: self.distance_mm,
-            side: *side,
-            stable: state.stable,
-            push_angle_deg: state.push.to_degrees(),
-            contact_angle_deg: state.angle.to_degrees(),
-            peak_strain: peak.strain * self.units.strain,
-            peak_strain_mm: peak.arclength * self.units.length_mm,
-            // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
-            // normal component of the force.
-            det: state.full.map.det() * row.pole_distance
-                / (rod.radius(state.tau).powi(3) * rod.contact_tangent().x),
-            sliding: state.sliding,
-            ..BranchPoint::default().with_state(Some(&self.read(state)))
-        }
+    /// Returns the unstable state of `node`. It has the friction of a contact that slides toward the tip, as the last stable states do.
+    fn beyond_fold(&self, node: &CurveNode) -> StateAtPush {
+        let friction = self.path.level.rod.friction;
+        let sliding = (friction != 0.0).then_some(Sliding::Tip);
+        StateAtPush::of(node, false, friction, sliding)
     }
 }

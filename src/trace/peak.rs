@@ -42,8 +42,8 @@ impl StableBranch {
     /// maximum, and ever closer states between them find it. A larger maximum between two other nodes can be missed.
     #[must_use]
     pub fn peak(&self, load: PushLoad) -> PushPeak {
-        let path = &self.0.path;
-        let nodes = &path.nodes;
+        let path = &self.path;
+        let nodes = path.stable();
         let sizes = self.sizes(nodes, load);
         let Some(best) = best(&sizes) else {
             return PushPeak {
@@ -81,27 +81,25 @@ impl StableBranch {
         }
     }
 
-    /// Returns the largest size of `load` at the nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
+    /// Returns the largest size of `load` at the stable nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
     #[must_use]
     pub fn rough_peak(&self, load: PushLoad) -> f64 {
-        let sizes = self.sizes(&self.0.path.nodes, load);
+        let sizes = self.sizes(self.path.stable(), load);
         best(&sizes).map_or(f64::NAN, |best| sizes[best])
     }
 
     /// Returns the sizes of a load at `nodes`, `[node]`; NaN where the contact's course is not found.
     fn sizes(&self, nodes: &[CurveNode], load: PushLoad) -> Vec<f64> {
-        let states = self.0.each_pushed(nodes);
+        let states = self.each_pushed(nodes);
         let known: Vec<StateAtPush> = states.iter().flatten().copied().collect();
         let size = |state: &StateAtPush| match load {
-            PushLoad::BaseMoment => self.0.read(state).base_moment_nnm.abs(),
-            _ => self.0.read(state).contact_force_un,
+            PushLoad::BaseMoment => self.read(state).base_moment_nnm.abs(),
+            _ => self.read(state).contact_force_un,
         };
         let sizes: Vec<f64> = match load {
             PushLoad::Strain => {
-                let peaks = self.0.peaks(&known).into_iter();
-                peaks
-                    .map(|peak| peak.strain * self.0.units.strain)
-                    .collect()
+                let peaks = self.peaks(&known).into_iter();
+                peaks.map(|peak| peak.strain * self.units.strain).collect()
             }
             _ => known.iter().map(size).collect(),
         };

@@ -1,7 +1,7 @@
 //! Shape of the whisker in one state, from base to tip.
 
 use super::columns::row;
-use super::{Branch, BranchPoint, FINER, StateAtPush};
+use super::{BranchPoint, FINER, StableBranch, StateAtPush};
 use glam::DVec2;
 use serde::Serialize;
 use whiskmap_mechanics::rod::{Rest, arclength};
@@ -59,11 +59,11 @@ pub enum WhiskerPart {
     Free,
 }
 
-impl WhiskerShape {
-    /// Computes the shape in the state `found` on `branch`, at `count` points evenly spaced along the whisker and at the contact.
+impl StableBranch {
+    /// Returns the shape in the state `found`, at `count` points evenly spaced along the whisker and at the contact.
     #[must_use]
-    pub fn new(branch: &Branch, found: &StateAtPush, count: usize) -> Self {
-        let (rod, row, units) = (&*branch.rod(found.ratio), branch.row(), &branch.units);
+    pub fn shape(&self, found: &StateAtPush, count: usize) -> WhiskerShape {
+        let (rod, row, units) = (&*self.rod(found.ratio), self.row(), &self.units);
         let contact = arclength(rod, found.tau).min(1.0);
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
@@ -98,21 +98,21 @@ impl WhiskerShape {
                 },
             }
         });
-        Self {
+        WhiskerShape {
             points: points.collect(),
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
             residual: found.full.map.pole.distance(row.pole(found.push)),
-            state: branch.point_of(found),
+            state: self.point_of(found),
         }
     }
 
-    /// Computes the shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
+    /// Returns the shape of the resting whisker at first touch: `count` points `[x, y]` in mm, in the axes of [`WhiskerShape`].
     #[must_use]
-    pub fn at_rest(branch: &Branch, count: usize) -> Vec<[f64; 2]> {
-        let rest = Rest::new(&branch.path.level.rod);
+    pub fn at_rest(&self, count: usize) -> Vec<[f64; 2]> {
+        let rest = Rest::new(&self.path.level.rod);
         uniform(count)
-            .map(|s| (rest.at_arclength(s).0 * branch.units.length_mm).to_array())
+            .map(|s| (rest.at_arclength(s).0 * self.units.length_mm).to_array())
             .collect()
     }
 }

@@ -1,15 +1,24 @@
 //! Stable part of a branch, where nothing is needed of the unstable states.
 
-use super::{Branch, NoState, StateAtPush, WhiskerShape};
+use super::columns::StateRow;
+use super::{BranchPoint, FINER, NoState, StateAtPush};
+use crate::friction::{ContactHistory, Sliding};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::Stretch;
-use whiskmap_mechanics::rod::Side;
-use whiskmap_mechanics::shooting::Reading;
+use crate::sheet::{LevelCurve, Path, Row, Stretch};
+use whiskmap_mechanics::rod::{Rest, Side, Units};
+use whiskmap_mechanics::shooting::PeakStrain;
+use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
-/// Stable part of a [`Branch`]: the states from first touch to the fold or the tip. The continuation ends there, which saves most of the
-/// time.
+/// Stable part of a [`Branch`](super::Branch): the states from first touch to the fold or the tip. The continuation ends there, which saves
+/// most of the time.
 #[derive(Clone, Debug)]
-pub struct StableBranch(pub(super) Branch);
+pub struct StableBranch {
+    pub(super) path: Path,
+    pub(super) units: Units,
+    /// Sliding history of the contact; `None` without friction, and if it is not found.
+    pub(super) history: Option<ContactHistory>,
+    pub(super) distance_mm: f64,
+}
 
 impl StableBranch {
     /// Computes the stable states of `whisker` at `pole`, whose first touch is at `distance_mm` from the base.
@@ -22,32 +31,102 @@ impl StableBranch {
         side: Side,
         distance_mm: f64,
     ) -> Result<Self, NoState> {
-        Branch::followed((whisker, pole, side), distance_mm, Stretch::Stable).map(Self)
+        Self::followed((whisker, pole, side), distance_mm, Stretch::Stable)
     }
 
-    /// Returns the stable state at the signed `push`, in radians.
-    ///
-    /// # Errors
-    /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
-    pub fn state(&self, push: f64) -> Result<StateAtPush, NoState> {
-        self.0.state(push, true)
+    /// Computes the branch along a `stretch` of its level curve from first touch.
+    pub(super) fn followed(
+        (whisker, pole, side): (&Whisker, &Pole, Side),
+        distance_mm: f64,
+        stretch: Stretch,
+    ) -> Result<Self, NoState> {
+        let rod = whisker.rod(pole, side);
+        let rest = Rest::new(&rod);
+        let row = Row::new(&rest, distance_mm / whisker.length_mm);
+        if !row.is_reached() {
+            let reach_mm = rest.reach() * whisker.length_mm;
+            return Err(NoState::OutOfReach { reach_mm });
+        }
+        let level = LevelCurve::new(Method::new(FINER), &rod, side, &row);
+        let path = level.continuation(level.touch(), stretch);
+        // From first touch at the tip there may be no state to continue to.
+        let none = match row.is_at_reach() {
+            true => NoState::PulledOff { at_deg: 0.0 },
+            false => NoState::Failed { push_deg: 0.0 },
+        };
+        let path = path.ok_or(none)?;
+        if path.fold.is_none() && path.end.is_none() {
+            return Err(NoState::BeyondTurns);
+        }
+        let has_friction = rod.friction != 0.0;
+        Ok(Self {
+            history: has_friction.then(|| ContactHistory::along(&path)).flatten(),
+            path,
+            units: whisker.units(),
+            distance_mm,
+        })
     }
 
-    /// Returns the shape in the state `found`, at `count` points evenly spaced along the whisker and at the contact.
+    /// Returns the row of the branch: distance and direction of the pole.
     #[must_use]
-    pub fn shape(&self, found: &StateAtPush, count: usize) -> WhiskerShape {
-        WhiskerShape::new(&self.0, found, count)
-    }
-
-    /// Returns the values of `state` in mm, deg, uN and nN m.
-    #[must_use]
-    pub fn read(&self, state: &StateAtPush) -> Reading {
-        self.0.read(state)
+    pub fn row(&self) -> &Row {
+        &self.path.level.row
     }
 
     /// Returns the signed push angle at which the stable states end, at the fold or at the tip, in degrees.
     #[must_use]
-    pub fn end_deg(&self) -> f64 {
-        self.0.stable_end_deg()
+    pub fn stable_end_deg(&self) -> f64 {
+        let stable = self.path.stable();
+        stable[stable.len() - 1].push.to_degrees()
+    }
+
+    /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.
+    pub(super) fn detaches(&self) -> bool {
+        let end = self.stable_end_deg().to_radians().abs();
+        let history = self.history.as_ref();
+        let sliding = history.and_then(|history| history.sliding_at_end(end));
+        sliding.is_none_or(|sliding| sliding == Sliding::Tip)
+    }
+
+    /// Returns the error of a failed continuation or corrector.
+    pub(super) fn failed(&self) -> NoState {
+        let nodes = &self.path.nodes;
+        let push_deg = nodes[nodes.len() - 1].push.to_degrees();
+        NoState::Failed { push_deg }
+    }
+
+    /// Returns the largest bending strains of `states`, `[state]`.
+    pub(super) fn peaks(&self, states: &[StateAtPush]) -> Vec<PeakStrain> {
+        let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
+        let conditions = rods
+            .iter()
+            .zip(states)
+            .map(|(rod, state)| InitialCondition {
+                rod,
+                tau: state.tau,
+                load: state.load,
+            });
+        Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
+    }
+
+    /// Returns `state` with its largest bending strain as a point without a mark.
+    pub(super) fn point(&self, state: &StateAtPush, peak: PeakStrain) -> BranchPoint {
+        let LevelCurve { side, row, .. } = &self.path.level;
+        let rod = &self.rod(state.ratio);
+        BranchPoint {
+            distance_mm: self.distance_mm,
+            side: *side,
+            stable: state.stable,
+            push_angle_deg: state.push.to_degrees(),
+            contact_angle_deg: state.angle.to_degrees(),
+            peak_strain: peak.strain * self.units.strain,
+            peak_strain_mm: peak.arclength * self.units.length_mm,
+            // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
+            // normal component of the force.
+            det: state.full.map.det() * row.pole_distance
+                / (rod.radius(state.tau).powi(3) * rod.contact_tangent().x),
+            sliding: state.sliding,
+            ..BranchPoint::default().with_state(Some(&self.read(state)))
+        }
     }
 }

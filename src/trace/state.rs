@@ -1,8 +1,8 @@
 //! States of a branch: at a push angle, and on the course of a contact with friction.
 
-use super::{Branch, BranchPoint, NoState};
+use super::{BranchPoint, NoState, StableBranch};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
-use crate::sheet::{CurveNode, LevelCurve};
+use crate::sheet::{CurveNode, LevelCurve, Path};
 use std::borrow::Cow;
 use whiskmap_mechanics::rod::Rod;
 use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
@@ -44,7 +44,7 @@ impl StateAtPush {
     }
 }
 
-impl Branch {
+impl StableBranch {
     /// Returns the values of `state` in mm, deg, uN and nN m.
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
@@ -63,46 +63,47 @@ impl Branch {
         self.point(state, self.peaks(std::slice::from_ref(state))[0])
     }
 
-    /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
+    /// Returns the stable state at the signed `push`, in radians.
     ///
     /// # Errors
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
-    pub fn state(&self, push: f64, stable: bool) -> Result<StateAtPush, NoState> {
-        let (path, level) = (&self.path, &self.path.level);
-        let part = match stable {
-            true => path.stable(),
-            false => path.unstable().ok_or_else(|| NoState::NoFold {
-                at_deg: self.stable_end_deg(),
-            })?,
+    pub fn state(&self, push: f64) -> Result<StateAtPush, NoState> {
+        let Path { level, fold, .. } = &self.path;
+        let left = |[touch, end]: [f64; 2]| {
+            let at_deg = end.to_degrees();
+            match fold {
+                _ if level.side.sign() * push < 0.0 => NoState::LostTouch {
+                    stays_deg: [touch.min(end), touch.max(end)].map(f64::to_degrees),
+                },
+                Some(_) => NoState::SlippedOff { at_deg },
+                None => NoState::PulledOff { at_deg },
+            }
         };
-        let (first, last) = (&part[0], &part[part.len() - 1]);
+        let node = self.node_at(self.path.stable(), push, left)?;
+        Ok(self.pushed(&[node])?[0])
+    }
+
+    /// Returns the node at the signed `push`, in radians, in a `part` of the path. Outside it, the error is what `outside` makes of its first
+    /// and last push.
+    pub(super) fn node_at(
+        &self,
+        part: &[CurveNode],
+        push: f64,
+        outside: impl FnOnce([f64; 2]) -> NoState,
+    ) -> Result<CurveNode, NoState> {
+        let ends @ [first, last] = [part[0].push, part[part.len() - 1].push];
         // A push angle that was printed in degrees may lie a few roundings beyond the end.
-        let ends = [first.push.min(last.push), first.push.max(last.push)];
-        let inside = push.clamp(ends[0], ends[1]);
+        let inside = push.clamp(first.min(last), first.max(last));
         let push = if (inside - push).abs() <= 8.0 * f64::EPSILON * push.abs() {
             inside
         } else {
             push
         };
-        let Some(node) = level.state_at_push(part, push) else {
-            let at_deg = last.push.to_degrees();
-            let within = (first.push - push) * (last.push - push) <= 0.0;
-            return Err(match (stable, path.fold) {
-                _ if within => self.failed(),
-                (true, _) if level.side.sign() * push < 0.0 => NoState::LostTouch {
-                    stays_deg: ends.map(f64::to_degrees),
-                },
-                (false, _) => NoState::NotUnstable {
-                    ends_deg: [first.push.to_degrees(), at_deg],
-                },
-                (true, Some(_)) => NoState::SlippedOff { at_deg },
-                (true, None) => NoState::PulledOff { at_deg },
-            });
-        };
-        let node = CurveNode { push, ..node };
-        Ok(match stable {
-            true => self.pushed(&[node])?[0],
-            false => self.beyond_fold(&[node])[0],
+        let node = self.path.level.state_at_push(part, push);
+        let node = node.map(|node| CurveNode { push, ..node });
+        node.ok_or_else(|| match push == inside {
+            true => self.failed(),
+            false => outside(ends),
         })
     }
 
@@ -115,7 +116,7 @@ impl Branch {
         self.each_pushed(nodes).into_iter().collect()
     }
 
-    /// Returns the stable state of a push at the push angle of each of the `nodes`, as [`Branch::pushed`] does: `[node]`. With friction, an entry is the
+    /// Returns the stable state of a push at the push angle of each of the `nodes`, as [`Self::pushed`] does: `[node]`. With friction, an entry is the
     /// reason why the course of the contact, or the state, is not found.
     pub(super) fn each_pushed(&self, nodes: &[CurveNode]) -> Vec<Result<StateAtPush, NoState>> {
         let LevelCurve { side, rod, .. } = &self.path.level;
@@ -157,16 +158,6 @@ impl Branch {
             ))
         });
         pushed.collect()
-    }
-
-    /// Returns the unstable states `nodes`, `[node]`. They have the friction of a contact that slides toward the tip, as the last stable states do.
-    pub(super) fn beyond_fold(&self, nodes: &[CurveNode]) -> Vec<StateAtPush> {
-        let friction = self.path.level.rod.friction;
-        let sliding = (friction != 0.0).then_some(Sliding::Tip);
-        let states = nodes.iter();
-        states
-            .map(|node| StateAtPush::of(node, false, friction, sliding))
-            .collect()
     }
 
     /// Returns the rod of the branch with the force ratio `ratio` as its friction.

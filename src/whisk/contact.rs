@@ -4,7 +4,7 @@ use super::states::{BothSides, PushedContact};
 use crate::friction::{ContactPhase, CourseLimits, FrictionCourse, Sliding};
 use whiskmap_mechanics::rod::Side;
 
-/// Contacts of a course, followed in the order of time. Without friction, they have no limits, and nothing is dissipated.
+/// Contacts of a course with a single pole, followed in the order of time. Without friction, they have no limits, and nothing is dissipated.
 pub struct ContactTracker<'a> {
     sides: &'a BothSides,
     /// Contact that has begun and not ended, with its side.
@@ -54,7 +54,7 @@ impl<'a> ContactTracker<'a> {
             course.to(push);
         }
         let phase = self.open.as_ref().map(|(_, course)| course.phase);
-        (PushedContact { side, push, phase }, self.changes())
+        (pushed(side, push, phase), self.changes())
     }
 
     /// Returns the contact on `side` at `push`, a magnitude in radians, on its way, the energy dissipated so far, and the changes before it,
@@ -63,11 +63,7 @@ impl<'a> ContactTracker<'a> {
         let reached = self.open.as_mut().map(|(_, course)| course.at(push));
         let phase = reached.as_ref().map(|course| course.phase);
         let dissipated = self.ended + reached.map_or(0.0, |course| course.dissipated);
-        (
-            PushedContact { side, push, phase },
-            dissipated,
-            self.changes(),
-        )
+        (pushed(side, push, phase), dissipated, self.changes())
     }
 
     /// Returns the changes of the contact since the last call, `[change]`: its phase before a snap, and no phase where it leaves the limits that are
@@ -81,12 +77,9 @@ impl<'a> ContactTracker<'a> {
         let lost = course.lost_at.filter(|_| !self.is_lost);
         self.is_lost |= lost.is_some();
         let changes = snaps.chain(lost.map(|push| (push, None)));
-        let changed = |(push, phase)| PushedContact {
-            side: *side,
-            push,
-            phase,
-        };
-        changes.map(changed).collect()
+        let side = *side;
+        let changed = changes.map(|(push, phase)| pushed(side, push, phase));
+        changed.collect()
     }
 
     /// Ends the contact after its last move. At a release no unstable states may be left ahead; a detachment needs a contact that slides
@@ -106,5 +99,15 @@ impl<'a> ContactTracker<'a> {
     pub fn dissipated(&self) -> f64 {
         let open = self.open.as_ref();
         self.ended + open.map_or(0.0, |(_, course)| course.dissipated)
+    }
+}
+
+/// Returns the contact with the single pole of a course.
+pub const fn pushed(side: Side, push: f64, phase: Option<ContactPhase>) -> PushedContact {
+    PushedContact {
+        side,
+        row: 0,
+        push,
+        phase,
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Events belong to the course, not to its samples: a contact is moved to events and turning points alone, and read at samples.
 
-use super::contact::ContactTracker;
+use super::contact::{ContactTracker, pushed};
 use super::phase::{Obstacles, Passage, Phase};
 use super::states::{BothSides, PushedContact};
 use super::turns::Turns;
@@ -12,10 +12,8 @@ use whiskmap_mechanics::rod::Side;
 /// Sample of a course, before its state is computed.
 #[derive(Clone, Copy, Debug)]
 pub struct LegSample {
-    /// Phase of the course at the sample: free, in contact or undecided.
-    pub phase: Phase,
-    /// Contact of the whisker at the sample; `None` without one.
-    pub contact: Option<PushedContact>,
+    /// Contact of the whisker at the sample; `None` for a free whisker. The error is the reason why the sample is undecided.
+    pub held: Result<Option<PushedContact>, Undecided>,
     /// Energy that friction has dissipated since the start of the course, in `E I_base/L_w`.
     pub dissipated: f64,
 }
@@ -27,8 +25,8 @@ pub struct LegEvent {
     pub time_s: f64,
     /// Angle of the base at the event, in radians.
     pub angle: f64,
-    /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
-    pub kind: Option<WhiskEventKind>,
+    /// Kind of the event.
+    pub kind: WhiskEventKind,
     /// Contact that begins, ends or changes; its push is NaN if the course is undecided from here on.
     pub contact: PushedContact,
 }
@@ -157,7 +155,9 @@ impl<'a> Legs<'a> {
     /// Returns side, obstacle and push of the contact at an `angle` of the base, in radians; `None` without a known one.
     fn contact(&self, angle: f64) -> Option<(Side, i32, f64)> {
         match self.phase {
-            Phase::Contact { side, obstacle } if !self.contacts.is_lost => {
+            Phase::Contact { side, obstacle }
+                if self.possible.is_empty() && !self.contacts.is_lost =>
+            {
                 let push = self.turns.push(side, obstacle, angle).max(0.0);
                 Some((side, obstacle, push))
             }
@@ -177,14 +177,10 @@ impl<'a> Legs<'a> {
             return;
         }
         let mut kind = event;
-        let mut contact = PushedContact {
-            side,
-            push,
-            phase: None,
-        };
+        let mut contact = pushed(side, push, None);
         match event {
-            Some(WhiskEventKind::Touch) => contact = self.contacts.touch(side, push),
-            Some(WhiskEventKind::Undecided) => {}
+            WhiskEventKind::Touch => contact = self.contacts.touch(side, push),
+            WhiskEventKind::Undecided => {}
             _ => {
                 let (reached, changes) = self.contacts.to(side, push);
                 self.change(leg, obstacle, changes);
@@ -192,9 +188,9 @@ impl<'a> Legs<'a> {
                     return;
                 }
                 contact = reached;
-                self.contacts.leave(event.is_some());
+                self.contacts.leave(event == WhiskEventKind::Release);
                 if self.contacts.is_lost {
-                    kind = Some(WhiskEventKind::Undecided);
+                    kind = WhiskEventKind::Undecided;
                 }
             }
         }
@@ -204,20 +200,22 @@ impl<'a> Legs<'a> {
     /// Adds the `changes` of the contact with an obstacle.
     fn change(&mut self, leg: &Leg, obstacle: i32, changes: Vec<PushedContact>) {
         for contact in changes {
-            let PushedContact { side, push, phase } = contact;
+            let PushedContact {
+                side, push, phase, ..
+            } = contact;
             let angle = self.turns.touch(side, obstacle) + side.sign() * push;
             let kind = match phase {
                 Some(_) => WhiskEventKind::Snap,
                 None => WhiskEventKind::Undecided,
             };
-            self.add(leg, angle, Some(kind), contact);
+            self.add(leg, angle, kind, contact);
         }
     }
 
     /// Adds an event.
-    fn add(&mut self, leg: &Leg, angle: f64, kind: Option<WhiskEventKind>, contact: PushedContact) {
+    fn add(&mut self, leg: &Leg, angle: f64, kind: WhiskEventKind, contact: PushedContact) {
         let push = match kind {
-            Some(WhiskEventKind::Undecided) => f64::NAN,
+            WhiskEventKind::Undecided => f64::NAN,
             _ => contact.push,
         };
         self.events.push(LegEvent {
@@ -230,32 +228,20 @@ impl<'a> Legs<'a> {
 
     /// Adds the sample at the end of a leg.
     fn end(&mut self, leg: Leg) {
-        let mut sample = LegSample {
-            phase: self.phase,
-            contact: None,
-            dissipated: self.contacts.dissipated(),
+        let mut dissipated = self.contacts.dissipated();
+        let mut held = match self.phase {
+            _ if !self.possible.is_empty() => Err(Undecided::AfterGap),
+            Phase::Undecided { reason, .. } => Err(reason),
+            _ => Ok(None),
         };
-        if !self.possible.is_empty() {
-            sample.phase = Phase::Undecided {
-                obstacle: 0,
-                reason: Undecided::AfterGap,
-            };
-            self.samples.push(sample);
-            return;
-        }
         if let Some((side, obstacle, push)) = self.contact(leg.angles[1]) {
-            let (contact, dissipated, changes) = self.contacts.at(side, push);
+            let (contact, taken, changes) = self.contacts.at(side, push);
             self.change(&leg, obstacle, changes);
-            sample.contact = Some(contact);
-            sample.dissipated = dissipated;
+            (held, dissipated) = (Ok(Some(contact)), taken);
         }
         if self.contacts.is_lost {
-            sample.phase = Phase::Undecided {
-                obstacle: 0,
-                reason: Undecided::Stuck,
-            };
-            sample.contact = None;
+            held = Err(Undecided::Stuck);
         }
-        self.samples.push(sample);
+        self.samples.push(LegSample { held, dissipated });
     }
 }

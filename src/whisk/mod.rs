@@ -19,8 +19,8 @@ mod turns;
 
 pub use course::{AngleCourse, CourseError};
 pub use gaps::CourseGap;
+pub(crate) use options::CurvaturePoint;
 pub use options::{CourseStart, CurvatureAtError, WhiskOptions};
-use readings::CurvaturePoint;
 pub(crate) use readings::signed_deg;
 pub use rows::{Undecided, WhiskEvent, WhiskEventKind, WhiskRegime, WhiskSample};
 pub use shapes::CourseShapes;
@@ -104,10 +104,7 @@ impl Whisk {
         let mut events = self.events.iter().peekable();
         let mut lost = 0.0;
         while let Some(event) = events.next() {
-            if matches!(
-                event.event,
-                WhiskEventKind::SlipOff | WhiskEventKind::PullOff
-            ) {
+            if event.event.is_detachment() {
                 let simultaneous = events
                     .peek()
                     .filter(|next| next.angle_deg == event.angle_deg);
@@ -198,11 +195,11 @@ pub fn whisk_with(
     course: &AngleCourse,
     options: &WhiskOptions,
 ) -> Result<Whisk, WhiskError> {
-    CurvatureAtError::check(whisker, options.curvature_at_mm)?;
+    let point = CurvaturePoint::of(whisker, options.curvature_at_mm)?;
     let front = Front::new(whisker, pole, distance_mm)?;
     let gaps = course.gaps(options.bridge_s);
     let legs = front.follow(course, &gaps, options)?;
-    let (mut samples, events) = front.states(&legs, options)?;
+    let (mut samples, events) = front.states(&legs, point, options)?;
     let known = course.known();
     for (&i, sample) in known.iter().zip(&mut samples) {
         let (time_s, angle_deg) = (course.times_s[i], course.angles_deg[i]);
@@ -242,7 +239,7 @@ impl<'a> Front<'a> {
         let cf_distance = rests[1].distance_of_pole(cb.pole_distance);
         let cf = Row::new(&rests[1], cf_distance);
         let states = |side, distance_mm| {
-            let states = SideStates::new(whisker, pole, side, vec![distance_mm]);
+            let states = SideStates::new(whisker, pole, side, &[distance_mm]);
             states.map_err(|_| WhiskError::Unresolved(side))
         };
         let cb_states = states(Side::Cb, distance_mm)?;
@@ -304,13 +301,9 @@ impl<'a> Front<'a> {
     fn states(
         &self,
         legs: &Legs,
+        point: Option<CurvaturePoint>,
         options: &WhiskOptions,
     ) -> Result<(Vec<WhiskSample>, Vec<WhiskEvent>), WhiskError> {
-        let rest = Rest::new(&self.whisker.rod(&Pole::smooth(0.0), Side::Cb));
-        let point = options.curvature_at_mm.map(|at_mm| CurvaturePoint {
-            at_mm,
-            at_rest_per_mm: rest.curvature(at_mm / self.whisker.length_mm) / self.whisker.length_mm,
-        });
         let unit_nj = self.whisker.units().moment_nnm;
         let mut samples = Vec::with_capacity(legs.samples.len());
         for chunk in legs.samples.chunks(STATES_AT_ONCE) {
@@ -344,8 +337,10 @@ fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Ph
     match start {
         Some(CourseStart::Contact) => turns.held(first).next().ok_or_else(|| WhiskError::NotHeld {
             angle_deg: first_deg,
-            cb_end_deg: turns.cb_end.to_degrees(),
-            cf_end_deg: turns.cf_end.map(|end| (turns.cf_touch - end).to_degrees()),
+            cb_end_deg: turns.cb_end.push.to_degrees(),
+            cf_end_deg: turns
+                .cf_end
+                .map(|end| (turns.cf_touch - end.push).to_degrees()),
         }),
         _ => turns.begin(first).ok_or(WhiskError::Begin {
             angle_deg: first_deg,

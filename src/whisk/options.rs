@@ -1,9 +1,10 @@
 //! Options of a course: its start, the point of its curvature, gaps that it bridges, and cancellation.
 
 use crate::names::names;
-use crate::scene::Whisker;
+use crate::scene::{Pole, Whisker};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use whiskmap_mechanics::rod::{Rest, Side};
 
 /// State in which a course begins.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,11 +50,27 @@ pub struct CurvatureAtError {
     pub length_mm: f64,
 }
 
-impl CurvatureAtError {
-    /// Checks the arclength of a curvature, in mm, if there is one.
-    pub(crate) fn check(whisker: &Whisker, at_mm: Option<f64>) -> Result<(), Self> {
+/// Point of the whisker at which samples have the curvature.
+#[derive(Clone, Copy)]
+pub struct CurvaturePoint {
+    /// Arclength from the base, in mm.
+    pub at_mm: f64,
+    /// Curvature there at rest, in 1/mm.
+    pub at_rest_per_mm: f64,
+}
+
+impl CurvaturePoint {
+    /// Creates the point of `whisker` at the arclength `at_mm`, if it is given. The error is a point that is not on the whisker.
+    pub fn of(whisker: &Whisker, at_mm: Option<f64>) -> Result<Option<Self>, CurvatureAtError> {
+        let Some(at_mm) = at_mm else { return Ok(None) };
         let length_mm = whisker.length_mm;
-        let outside = at_mm.filter(|at_mm| !(0.0..=length_mm).contains(at_mm));
-        outside.map_or(Ok(()), |at_mm| Err(Self { at_mm, length_mm }))
+        if !(0.0..=length_mm).contains(&at_mm) {
+            return Err(CurvatureAtError { at_mm, length_mm });
+        }
+        let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
+        Ok(Some(Self {
+            at_mm,
+            at_rest_per_mm: rest.curvature(at_mm / length_mm) / length_mm,
+        }))
     }
 }

@@ -23,14 +23,23 @@ pub const ROUNDING: f64 = 8.0 * f64::EPSILON * TAU;
 pub struct Passage {
     /// Angle of the base at which the phase changes, in radians.
     pub angle: f64,
-    /// Kind of the event; `None` for a detachment whose kind is the kind of the end of the push.
-    pub event: Option<WhiskEventKind>,
+    /// Kind of the event.
+    pub event: WhiskEventKind,
     /// Side of the contact that begins or ends.
     pub side: Side,
     /// Number of the obstacle whose contact begins or ends.
     pub obstacle: i32,
     /// Push since the touch of this contact, in radians, as a magnitude; NaN where the phase is undecided.
     pub push: f64,
+}
+
+/// End of a push against an obstacle, where the whisker detaches.
+#[derive(Clone, Copy, Debug)]
+pub struct ContactEnd {
+    /// Push since the touch, in radians, as a magnitude.
+    pub push: f64,
+    /// Kind of the detachment.
+    pub kind: WhiskEventKind,
 }
 
 /// Obstacles past which the base turns the whisker. They are numbered in the direction of growing angles, on CB. The resting whisker fits
@@ -40,9 +49,9 @@ pub trait Obstacles {
     /// it is infinite, beyond the first one minus infinity.
     fn touch(&self, side: Side, obstacle: i32) -> f64;
 
-    /// Returns the largest push against an obstacle on `side`, in radians, as a magnitude. It is `None` if the resting whisker does not
-    /// reach the obstacle on that side.
-    fn end(&self, side: Side, obstacle: i32) -> Option<f64>;
+    /// Returns the end of a push against an obstacle on `side`. It is `None` if the resting whisker does not reach the obstacle on that
+    /// side.
+    fn end(&self, side: Side, obstacle: i32) -> Option<ContactEnd>;
 
     /// Returns the push against an obstacle on `side` at `angle`, in radians, as a magnitude. It is negative before the touch.
     fn push(&self, side: Side, obstacle: i32, angle: f64) -> f64 {
@@ -91,7 +100,7 @@ pub trait Obstacles {
         match state {
             Phase::Undecided { obstacle, reason } if begins => Some(Passage {
                 angle,
-                event: Some(WhiskEventKind::Undecided),
+                event: WhiskEventKind::Undecided,
                 side: match reason {
                     Undecided::TipEdge => ahead(grows),
                     _ => ahead(!grows),
@@ -100,20 +109,19 @@ pub trait Obstacles {
                 push: f64::NAN,
             }),
             Phase::Contact { side, obstacle } => {
-                let event = match (begins, side == ahead(grows)) {
-                    (true, _) => Some(WhiskEventKind::Touch),
-                    (false, false) => Some(WhiskEventKind::Release),
-                    (false, true) => None,
-                };
                 let push = self.push(side, obstacle, angle).max(0.0);
-                // The end itself, without the rounding of angles: just before it, the state is nearly singular.
-                let end = self.end(side, obstacle).filter(|_| event.is_none());
+                let (event, push) = match self.end(side, obstacle) {
+                    _ if begins => (WhiskEventKind::Touch, push),
+                    // The end itself, without the rounding of angles: just before it, the state is nearly singular.
+                    Some(end) if side == ahead(grows) => (end.kind, end.push),
+                    _ => (WhiskEventKind::Release, push),
+                };
                 Some(Passage {
                     angle,
                     event,
                     side,
                     obstacle,
-                    push: end.unwrap_or(push),
+                    push,
                 })
             }
             _ => None,
@@ -139,7 +147,7 @@ pub trait Obstacles {
                 side: held,
                 obstacle,
             } if held == side => {
-                let end = self.end(side, obstacle).unwrap_or_default();
+                let end = self.end(side, obstacle).map_or(0.0, |end| end.push);
                 let angle = self.touch(side, obstacle) + side.sign() * end;
                 (angle, self.after_detachment(obstacle, angle, grows))
             }
@@ -158,7 +166,7 @@ pub trait Obstacles {
         let (side, step) = (ahead(grows), if grows { 1 } else { -1 });
         let holds = |side, obstacle| {
             let push = self.push(side, obstacle, angle);
-            push >= 0.0 && self.end(side, obstacle).is_some_and(|end| push < end)
+            push >= 0.0 && self.end(side, obstacle).is_some_and(|end| push < end.push)
         };
         let mut passed = obstacle;
         while self.push(side, passed + step, angle) >= 0.0 {

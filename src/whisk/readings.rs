@@ -1,23 +1,14 @@
 //! Samples and events of a course with their states.
 
 use super::legs::{LegEvent, LegSample};
-use super::phase::Phase;
+use super::options::CurvaturePoint;
 use super::rows::{Undecided, WhiskEvent, WhiskRegime, WhiskSample};
 use super::states::{BothSides, CourseState, PushedContact, SideStates};
-use crate::friction::{ContactPhase, held, states};
+use crate::friction::{held, states};
 use crate::trace::StateRow;
 use glam::DVec2;
 use rayon::prelude::*;
 use whiskmap_mechanics::rod::Side;
-
-/// Point of the whisker at which samples have the curvature.
-#[derive(Clone, Copy)]
-pub struct CurvaturePoint {
-    /// Arclength from the base, in mm.
-    pub at_mm: f64,
-    /// Curvature there at rest, in 1/mm.
-    pub at_rest_per_mm: f64,
-}
 
 impl WhiskSample {
     /// Returns the sample at a time in s and an angle of the base in degrees, with the position of the contact on a pole with this centre and
@@ -59,15 +50,14 @@ impl BothSides {
         point: Option<CurvaturePoint>,
         unit_nj: f64,
     ) -> Vec<WhiskSample> {
-        let contacts: Vec<Option<PushedContact>> =
-            samples.iter().map(|sample| sample.contact).collect();
-        let readings = self.at(&contacts, states);
+        let contacts = samples.iter().map(|sample| sample.held.ok().flatten());
+        let readings = self.at(&contacts.collect::<Vec<_>>(), states);
         let samples = samples.par_iter().zip(readings);
         let with_curvature = |(leg_sample, state): (&LegSample, Option<CourseState>)| {
-            let curvature = point.and_then(|point| match leg_sample.phase {
-                Phase::Free { .. } => Some(point.at_rest_per_mm),
-                _ => {
-                    let states = self.of(leg_sample.contact?.side)?;
+            let curvature = point.and_then(|point| match leg_sample.held.ok()? {
+                None => Some(point.at_rest_per_mm),
+                Some(contact) => {
+                    let states = self.of(contact.side)?;
                     Some(states.curvature_per_mm(&state?, point.at_mm))
                 }
             });
@@ -91,13 +81,13 @@ impl BothSides {
             let push = Some(push).filter(|push| !push.is_nan());
             let event = WhiskEvent {
                 time_s: event.time_s,
-                event: event.kind.unwrap_or_else(|| self.detachment(side, 0)),
+                event: event.kind,
                 side,
                 angle_deg: event.angle.to_degrees(),
                 push_angle_deg: push.map(|push| signed_deg(side, push)),
-                snaps_deg: match event.kind {
-                    None => self.of(side).and_then(SideStates::snaps_deg),
-                    Some(_) => None,
+                snaps_deg: match event.kind.is_detachment() {
+                    true => self.of(side).and_then(SideStates::snaps_deg),
+                    false => None,
                 },
                 ..WhiskEvent::default()
             };
@@ -109,13 +99,8 @@ impl BothSides {
 
 /// Returns a sample without a state, whose angle is missing for this `reason`.
 pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
-    let phase = Phase::Undecided {
-        obstacle: 0,
-        reason,
-    };
     let undecided = LegSample {
-        phase,
-        contact: None,
+        held: Err(reason),
         dissipated: f64::NAN,
     };
     WhiskSample {
@@ -126,34 +111,25 @@ pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
 
 /// Returns a sample without time and angle. `unit` is the unit of energies, in nJ.
 fn sample(leg_sample: &LegSample, state: Option<CourseState>, unit: f64) -> WhiskSample {
-    let LegSample {
-        phase,
-        contact,
-        dissipated,
-    } = *leg_sample;
-    let reason = match phase {
-        Phase::Undecided { reason, .. } => Some(reason),
-        Phase::Contact { .. } if state.is_none() => Some(Undecided::NotFound),
-        _ => None,
+    let LegSample { held, dissipated } = *leg_sample;
+    let empty = WhiskSample::default();
+    let (regime, reason, loads) = match (held, &state) {
+        (Err(reason), _) => (WhiskRegime::Undecided, Some(reason), empty),
+        (Ok(None), _) => (WhiskRegime::Free, None, empty.unloaded()),
+        (Ok(Some(_)), None) => (WhiskRegime::Undecided, Some(Undecided::NotFound), empty),
+        (Ok(Some(_)), Some(state)) => {
+            let loads = empty.with_state(Some(&state.reading));
+            (WhiskRegime::Contact, None, loads)
+        }
     };
-    let loads = match phase {
-        Phase::Free { .. } => WhiskSample::default().unloaded(),
-        _ => WhiskSample::default().with_state(state.as_ref().map(|state| &state.reading)),
-    };
+    let contact = held.ok().flatten();
     let is_known = dissipated.is_finite() && reason != Some(Undecided::Stuck);
     WhiskSample {
-        regime: match (phase, reason) {
-            (_, Some(_)) => WhiskRegime::Undecided,
-            (Phase::Free { .. }, _) => WhiskRegime::Free,
-            _ => WhiskRegime::Contact,
-        },
+        regime,
         side: contact.map(|contact| contact.side),
         push_angle_deg: contact.map(|contact| signed_deg(contact.side, contact.push)),
         dissipated_nj: is_known.then_some(dissipated * unit),
-        sliding: state.and_then(|state| {
-            let phase = || contact?.phase.map(ContactPhase::sliding);
-            state.sliding.or_else(phase)
-        }),
+        sliding: state.and_then(|state| state.sliding),
         reason,
         ..loads
     }

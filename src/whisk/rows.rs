@@ -94,6 +94,14 @@ pub enum WhiskEventKind {
     Undecided,
 }
 
+impl WhiskEventKind {
+    /// Returns true if the whisker detaches: a slip-off or a pull-off.
+    #[must_use]
+    pub const fn is_detachment(self) -> bool {
+        matches!(self, Self::SlipOff | Self::PullOff)
+    }
+}
+
 row! {
     /// Event of a course, between samples. Its loads and energy belong to the last state before the event, and after a touch to the first
     /// state after it.

@@ -2,16 +2,16 @@
 
 use super::{Whisk, WhiskSample};
 use crate::scene::{Pole, Whisker};
-use crate::trace::{Branch, NoState, WhiskerPart, WhiskerShape};
+use crate::trace::{NoState, StableBranch, WhiskerPart, WhiskerShape};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Shapes of a whisker along a course, from the branches on which its states lie. Lengths are in mm in the axes of first touch on CB, where the
 /// pole stands still: the origin is at the base, and the first axis along the base's tangent.
 pub struct CourseShapes {
-    cb: Branch,
+    cb: StableBranch,
     /// The reason if the resting whisker does not reach the pole on CF.
-    cf: Result<Branch, NoState>,
+    cf: Result<StableBranch, NoState>,
     cf_touch_deg: f64,
     /// Centre of the pole, `[x, y]`.
     pub pole_mm: [f64; 2],
@@ -28,11 +28,11 @@ impl CourseShapes {
         distance_mm: f64,
         found: &Whisk,
     ) -> Result<Self, NoState> {
-        let cb = Branch::new(whisker, pole, Side::Cb, distance_mm)?;
+        let cb = StableBranch::new(whisker, pole, Side::Cb, distance_mm)?;
         let rest = Rest::new(&whisker.rod(pole, Side::Cf));
         let cf_distance = rest.distance_of_pole(cb.row().pole_distance);
         Ok(Self {
-            cf: Branch::new(whisker, pole, Side::Cf, cf_distance * whisker.length_mm),
+            cf: StableBranch::new(whisker, pole, Side::Cf, cf_distance * whisker.length_mm),
             cf_touch_deg: found.cf_touch_deg,
             pole_mm: (cb.row().pole(0.0) * whisker.length_mm).to_array(),
             cb,
@@ -56,8 +56,8 @@ impl CourseShapes {
             Side::Cb => &self.cb,
             Side::Cf => self.cf.as_ref().map_err(|why| *why)?,
         };
-        let state = branch.state(push_deg.to_radians(), true)?;
-        Ok(Some(WhiskerShape::new(branch, &state, count)))
+        let state = branch.state(push_deg.to_radians())?;
+        Ok(Some(branch.shape(&state, count)))
     }
 
     /// Returns `count` evenly spaced points `[x, y]` of the whisker in a sample. If `with_contact` is true, a bent whisker has a point at the
@@ -89,7 +89,7 @@ impl CourseShapes {
             }
             None => {
                 let angle_deg = sample.angle_deg.unwrap_or(f64::NAN);
-                (WhiskerShape::at_rest(&self.cb, count), -angle_deg)
+                (self.cb.at_rest(count), -angle_deg)
             }
         };
         let turn = DVec2::from_angle(turn_deg.to_radians());

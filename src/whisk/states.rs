@@ -1,23 +1,27 @@
 //! States of a course on one side of its obstacles, in batches.
 
 use super::WhiskEventKind;
+use super::phase::ContactEnd;
 use crate::classify::TIE;
 use crate::friction::{ContactPhase, ContactQuery, CourseLimits, FrictionState, Sliding};
 use crate::refine::{CellTarget, refine};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::Sheet;
-use crate::trace::{DetachmentKind, EndDetail, RowEnd, StableBranch, snaps_deg};
+use crate::sheet::{Crossing, Edge, Path, Sheet, Stretch};
+use crate::trace::{EndDetail, RowEnd, snaps_deg};
 use glam::DVec2;
+use std::collections::BTreeMap;
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
 
-/// Contact of the whisker at one time: side, push and, with friction, the phase of the contact.
+/// Contact of the whisker at one time: side, pole, push and, with friction, the phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PushedContact {
     /// Side of the whisker that the pole is on.
     pub side: Side,
+    /// Row of the pole in the states of the side; 0 for a single pole.
+    pub row: usize,
     /// Push since the touch, in radians, as a magnitude.
     pub push: f64,
     /// Phase of the contact; `None` without friction.
@@ -26,9 +30,7 @@ pub struct PushedContact {
 
 /// Stable states on one side of poles at several distances, from first touch to the end of the push.
 pub struct SideStates {
-    whisker: Whisker,
-    pole: Pole,
-    distances_mm: Vec<f64>,
+    length_mm: f64,
     sheet: Sheet,
     reader: Reader,
     ends: Vec<RowEnd>,
@@ -50,11 +52,11 @@ pub struct CourseState {
 
 impl CourseState {
     /// Creates a state without friction, or without a load.
-    fn smooth(reading: Reading, tau: f64, load: f64) -> Self {
+    fn smooth(reading: Reading, point: DVec2) -> Self {
         Self {
             reading,
             sliding: None,
-            point: DVec2::new(tau, load),
+            point,
             ratio: 0.0,
         }
     }
@@ -64,9 +66,6 @@ impl CourseState {
 /// is found.
 pub type SolveContacts = fn(&[ContactQuery]) -> Vec<Option<FrictionState>>;
 
-/// Contact with a pole: index of the pole's row, and the push in radians, as a magnitude.
-pub type RowPush = (usize, f64);
-
 impl SideStates {
     /// Computes the sheet and the ends of the pushes on `side` for first touches at `distances_mm`, which must increase; with friction, also
     /// the limits of sliding. The error is the index of a distance without an end, or where the contact sticks at the end.
@@ -74,7 +73,7 @@ impl SideStates {
         whisker: &Whisker,
         pole: &Pole,
         side: Side,
-        distances_mm: Vec<f64>,
+        distances_mm: &[f64],
     ) -> Result<Self, usize> {
         let rod = whisker.rod(pole, side);
         let method = Method::new(Resolution::FINE);
@@ -101,21 +100,19 @@ impl SideStates {
             ends,
             limits,
             reader: Reader::new(whisker.units(), &rod),
-            whisker: whisker.clone(),
-            pole: *pole,
-            distances_mm,
+            length_mm: whisker.length_mm,
             sheet,
         })
     }
 
-    /// Returns the push at which the whisker detaches from the pole of `row`, in radians, as a magnitude.
-    pub fn end(&self, row: usize) -> f64 {
-        self.ends[row].crossing.push
-    }
-
-    /// Returns the kind of the detachment from the pole of `row`.
-    pub fn kind(&self, row: usize) -> DetachmentKind {
-        self.ends[row].kind()
+    /// Returns the end of a push against the pole of `row`.
+    pub fn end(&self, row: usize) -> ContactEnd {
+        let Crossing { push, edge, .. } = self.ends[row].crossing;
+        let kind = match edge {
+            Edge::Fold => WhiskEventKind::SlipOff,
+            Edge::Tip => WhiskEventKind::PullOff,
+        };
+        ContactEnd { push, kind }
     }
 
     /// Returns the push angle, in degrees, up to which the first row has other stable states at its detachment.
@@ -130,7 +127,7 @@ impl SideStates {
 
     /// Returns the curvature of the whisker in `state` at the arclength `at_mm`, in 1/mm.
     pub fn curvature_per_mm(&self, state: &CourseState, at_mm: f64) -> f64 {
-        let length = self.whisker.length_mm;
+        let length = self.length_mm;
         let rod = Rod {
             friction: state.ratio,
             ..self.sheet.rod.clone()
@@ -142,27 +139,29 @@ impl SideStates {
             .map_or(f64::NAN, |point| point.curvature / length)
     }
 
-    /// Returns the states of `contacts` in the first row, `[contact]`; `None` where no state is found. States with friction are solved by
-    /// `solve`.
+    /// Returns the states of `contacts`, `[contact]`; `None` where no state is found. States with friction are solved by `solve`.
     fn at(&self, contacts: &[PushedContact], solve: SolveContacts) -> Vec<Option<CourseState>> {
-        let Some(limits) = self.limits(0) else {
-            let pushes: Vec<RowPush> = contacts.iter().map(|contact| (0, contact.push)).collect();
-            return self.without_friction(&pushes);
-        };
+        if self.limits.is_empty() {
+            return self.without_friction(contacts);
+        }
         // A contact that sticks when the push is back at 0 is not at first touch: the whisker is still bent.
         let is_inside = |contact: &PushedContact| {
             let is_stuck = matches!(contact.phase, Some(ContactPhase::Sticks(_)));
-            (contact.push > 0.0 || is_stuck && contact.push == 0.0) && contact.push < self.end(0)
+            (contact.push > 0.0 || is_stuck && contact.push == 0.0)
+                && contact.push < self.end(contact.row).push
         };
         let inside = contacts.iter().filter(|contact| is_inside(contact));
-        let queries = inside.filter_map(|contact| Some(limits.query(contact.phase?, contact.push)));
+        let queries = inside.filter_map(|contact| {
+            let limits = self.limits(contact.row)?;
+            Some(limits.query(contact.phase?, contact.push))
+        });
         let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
         let states = contacts.iter().map(|contact| {
             if is_inside(contact) {
                 let state = contact.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
                 let (touch, push) = (
-                    self.sheet.rows[0].touch,
+                    self.sheet.rows[contact.row].touch,
                     self.sheet.side.sign() * contact.push,
                 );
                 return Some(CourseState {
@@ -173,8 +172,8 @@ impl SideStates {
                 });
             }
             let state = match contact.push > 0.0 {
-                true => self.at_end(0),
-                false => self.at_touch(0),
+                true => self.at_end(contact.row),
+                false => self.at_touch(contact.row),
             };
             let sliding = contact.phase.map(|phase| phase.sliding());
             Some(CourseState { sliding, ..state })
@@ -186,29 +185,29 @@ impl SideStates {
     fn at_end(&self, row: usize) -> CourseState {
         let end = &self.ends[row];
         let reading = end.reading(&self.reader, &self.sheet, row);
+        let point = DVec2::new(end.crossing.tau, end.crossing.load);
         CourseState {
             ratio: self.sheet.rod.friction,
-            ..CourseState::smooth(reading, end.crossing.tau, end.crossing.load)
+            ..CourseState::smooth(reading, point)
         }
     }
 
     fn at_touch(&self, row: usize) -> CourseState {
         let row = &self.sheet.rows[row];
-        let contact = row.contact.min(row.end);
-        let reading = self.reader.at_first_touch(contact, row.touch);
-        CourseState::smooth(reading, self.sheet.rod.tau(contact), 0.0)
+        let point = row.first_touch(&self.sheet.rod);
+        CourseState::smooth(row.read_first_touch(&self.reader), point)
     }
 
     /// Returns the states without friction at `contacts`, `[contact]`; `None` where no state is found.
-    fn without_friction(&self, contacts: &[RowPush]) -> Vec<Option<CourseState>> {
+    fn without_friction(&self, contacts: &[PushedContact]) -> Vec<Option<CourseState>> {
         let sign = self.sheet.side.sign();
         let mut order: Vec<usize> = (0..contacts.len()).collect();
-        let of = |i: usize| contacts[i];
-        order.sort_by(|a, b| of(*a).0.cmp(&of(*b).0).then(of(*a).1.total_cmp(&of(*b).1)));
+        let (row, push) = (|i: &usize| contacts[*i].row, |i: &usize| contacts[*i].push);
+        order.sort_by(|a, b| row(a).cmp(&row(b)).then(push(a).total_cmp(&push(b))));
         let (mut places, mut targets) = (Vec::new(), Vec::new());
-        for same in order.chunk_by(|a, b| of(*a).0 == of(*b).0) {
-            let row = of(same[0]).0;
-            let pushes: Vec<f64> = same.iter().map(|i| of(*i).1).collect();
+        for same in order.chunk_by(|a, b| row(a) == row(b)) {
+            let row = row(&same[0]);
+            let pushes: Vec<f64> = same.iter().map(push).collect();
             let guesses = self.sheet.guesses(row, &pushes);
             for (i, guess) in same.iter().zip(guesses) {
                 let Some(guess) = guess else { continue };
@@ -216,7 +215,7 @@ impl SideStates {
                 targets.push(CellTarget {
                     rod: 0,
                     guess,
-                    pole: self.sheet.rows[row].pole(sign * of(*i).1),
+                    pole: self.sheet.rows[row].pole(sign * push(i)),
                 });
             }
         }
@@ -224,44 +223,48 @@ impl SideStates {
         let found = refine(Method::new(Resolution::FINE), &[&self.sheet], &targets);
         for (i, cell) in places.into_iter().zip(found) {
             if cell.outcome.is_solved() {
-                let (state, (row, push)) = (cell.state, of(i));
-                let touch = self.sheet.rows[row].touch;
+                let (state, touch) = (cell.state, self.sheet.rows[row(&i)].touch);
+                let signed_push = sign * push(&i);
                 let reading = self
                     .reader
-                    .read(state.point.x, &state.full, touch, sign * push);
-                states[i] = Some(CourseState::smooth(reading, state.point.x, state.point.y));
+                    .read(state.point.x, &state.full, touch, signed_push);
+                states[i] = Some(CourseState::smooth(reading, state.point));
             }
         }
         self.fill(contacts, &mut states);
         states
     }
 
-    /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation.
-    fn fill(&self, contacts: &[RowPush], states: &mut [Option<CourseState>]) {
-        let side = self.sheet.side;
-        let mut last: Option<(usize, Option<StableBranch>)> = None;
-        for (state, &(row, push)) in states.iter_mut().zip(contacts) {
+    /// Fills the states that Newton's method has not found: at touch, at the end, and by continuation along the row.
+    fn fill(&self, contacts: &[PushedContact], states: &mut [Option<CourseState>]) {
+        let mut paths: BTreeMap<usize, Option<Path>> = BTreeMap::new();
+        for (state, &PushedContact { row, push, .. }) in states.iter_mut().zip(contacts) {
             if push <= 0.0 {
                 *state = Some(self.at_touch(row));
-            } else if push >= self.end(row) {
+            } else if push >= self.end(row).push {
                 *state = Some(self.at_end(row));
             } else if state.is_none() {
-                let distance = self.distances_mm[row];
-                let branch = match last.take() {
-                    Some((last_row, branch)) if last_row == row => branch,
-                    _ => StableBranch::new(&self.whisker, &self.pole, side, distance).ok(),
-                };
-                let followed = branch.as_ref().and_then(|branch| {
-                    let state = branch.state(side.sign() * push).ok()?;
-                    let reading = branch.read(&state);
-                    Some(CourseState::smooth(reading, state.tau, state.load))
+                let path = paths.entry(row).or_insert_with(|| {
+                    let level = self.sheet.level(row);
+                    level.continuation(level.touch(), Stretch::Stable)
                 });
-                // The ends of the branch and of the push are computed apart.
-                let is_end = push >= self.end(row) - TIE;
+                let followed = path.as_ref().and_then(|path| self.along(path, push));
+                // The ends of the path and of the push are computed apart.
+                let is_end = push >= self.end(row).push - TIE;
                 *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
-                last = Some((row, branch));
             }
         }
+    }
+
+    /// Returns the state without friction at `push` along the stable states of a row; `None` beyond them.
+    fn along(&self, path: &Path, push: f64) -> Option<CourseState> {
+        let signed_push = self.sheet.side.sign() * push;
+        let node = path.level.state_at_push(path.stable(), signed_push)?;
+        let touch = path.level.row.touch;
+        let reading = self
+            .reader
+            .read(node.point.x, &node.full, touch, signed_push);
+        Some(CourseState::smooth(reading, node.point))
     }
 }
 
@@ -279,52 +282,24 @@ impl BothSides {
         }
     }
 
-    /// Returns the state of each push without friction, `[contact]`; `None` where there is none.
-    pub fn pushed(&self, pushes: &[Option<(Side, RowPush)>]) -> Vec<Option<CourseState>> {
-        self.by_side(pushes, SideStates::without_friction)
-    }
-
-    /// Returns the state of each of the `contacts` in the first rows, `[contact]`; `None` where there is none. States with friction are solved by
-    /// `solve`.
+    /// Returns the state of each of the `contacts`, `[contact]`; `None` where there is none. States with friction are solved by `solve`.
     pub fn at(
         &self,
         contacts: &[Option<PushedContact>],
         solve: SolveContacts,
     ) -> Vec<Option<CourseState>> {
-        let contacts = contacts
-            .iter()
-            .map(|contact| contact.map(|contact| (contact.side, contact)));
-        self.by_side(&contacts.collect::<Vec<_>>(), |states, contacts| {
-            states.at(contacts, solve)
-        })
-    }
-
-    /// Returns the state of each of the `contacts`, `[contact]`, which `solve` finds for the contacts of one side.
-    fn by_side<C: Copy>(
-        &self,
-        contacts: &[Option<(Side, C)>],
-        solve: impl Fn(&SideStates, &[C]) -> Vec<Option<CourseState>>,
-    ) -> Vec<Option<CourseState>> {
         let mut found = vec![None; contacts.len()];
         for side in Side::BOTH {
             let indexed = contacts.iter().enumerate();
             let on_side = indexed.filter_map(|(i, contact)| {
-                Some((i, contact.filter(|contact| contact.0 == side)?.1))
+                Some((i, contact.filter(|contact| contact.side == side)?))
             });
-            let (places, contacts): (Vec<usize>, Vec<C>) = on_side.unzip();
-            let states = self.of(side).map(|states| solve(states, &contacts));
+            let (places, contacts): (Vec<usize>, Vec<PushedContact>) = on_side.unzip();
+            let states = self.of(side).map(|states| states.at(&contacts, solve));
             for (i, state) in places.into_iter().zip(states.into_iter().flatten()) {
                 found[i] = state;
             }
         }
         found
-    }
-
-    /// Returns the kind of the event at which a push against the pole of `row` ends.
-    pub fn detachment(&self, side: Side, row: usize) -> WhiskEventKind {
-        match self.of(side).map(|states| states.kind(row)) {
-            Some(DetachmentKind::PullOff) => WhiskEventKind::PullOff,
-            _ => WhiskEventKind::SlipOff,
-        }
     }
 }

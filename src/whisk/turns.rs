@@ -1,7 +1,7 @@
 //! One pole in front of a base that can turn around it: the same obstacle after each turn.
 
 use super::Undecided;
-use super::phase::{Obstacles, Phase, ROUNDING};
+use super::phase::{ContactEnd, Obstacles, Phase, ROUNDING};
 use std::f64::consts::TAU;
 use whiskmap_mechanics::rod::Side;
 
@@ -10,10 +10,10 @@ use whiskmap_mechanics::rod::Side;
 pub struct Turns {
     /// Angle of the base at first touch on CF, in radians. On CB it is 0.
     pub cf_touch: f64,
-    /// Push on CB at which the whisker detaches, in radians.
-    pub cb_end: f64,
-    /// Push on CF at which the whisker detaches, as a magnitude in radians; `None` if the resting whisker does not reach the pole on CF.
-    pub cf_end: Option<f64>,
+    /// End of a push on CB.
+    pub cb_end: ContactEnd,
+    /// End of a push on CF; `None` if the resting whisker does not reach the pole on CF.
+    pub cf_end: Option<ContactEnd>,
 }
 
 impl Turns {
@@ -40,7 +40,7 @@ impl Turns {
             // Courses have at most a turn to each side.
             let obstacle = turn as i32;
             let end = self.end(side, obstacle)?;
-            let is_held = self.push(side, obstacle, angle) < end;
+            let is_held = self.push(side, obstacle, angle) < end.push;
             is_held.then_some(Phase::Contact { side, obstacle })
         })
     }
@@ -67,7 +67,7 @@ impl Obstacles for Turns {
         from_turn + TAU * f64::from(turn)
     }
 
-    fn end(&self, side: Side, _turn: i32) -> Option<f64> {
+    fn end(&self, side: Side, _turn: i32) -> Option<ContactEnd> {
         match side {
             Side::Cb => Some(self.cb_end),
             Side::Cf => self.cf_end,
@@ -82,12 +82,17 @@ mod tests {
 
     const TURNS: Turns = Turns {
         cf_touch: 0.1,
-        cb_end: 0.5,
-        cf_end: Some(0.7),
+        cb_end: slip_off(0.5),
+        cf_end: Some(slip_off(0.7)),
     };
 
+    const fn slip_off(push: f64) -> ContactEnd {
+        let kind = WhiskEventKind::SlipOff;
+        ContactEnd { push, kind }
+    }
+
     /// Events of a course through these angles: what happens, on which side, and at which angle.
-    fn events(turns: &Turns, angles: &[f64]) -> Vec<(Option<WhiskEventKind>, Side, f64)> {
+    fn events(turns: &Turns, angles: &[f64]) -> Vec<(WhiskEventKind, Side, f64)> {
         let mut events = Vec::new();
         let mut phase = turns.begin(angles[0]).unwrap_or(Phase::Free { after: 99 });
         for pair in angles.windows(2) {
@@ -100,22 +105,22 @@ mod tests {
 
     #[test]
     fn a_whisker_that_slips_off_comes_back_on_the_other_side() {
-        use WhiskEventKind::{Release, Touch};
+        use WhiskEventKind::{Release, SlipOff, Touch};
         let found = events(&TURNS, &[-0.2, 1.0, -1.0]);
         let end = 0.1 - 0.7;
         let wanted = [
-            (Some(Touch), Side::Cb, 0.0),
-            (None, Side::Cb, 0.5),
-            (Some(Touch), Side::Cf, 0.1),
-            (None, Side::Cf, end),
+            (Touch, Side::Cb, 0.0),
+            (SlipOff, Side::Cb, 0.5),
+            (Touch, Side::Cf, 0.1),
+            (SlipOff, Side::Cf, end),
         ];
         assert_eq!(found, wanted);
         // A push that turns back is released where it began.
         let found = events(&TURNS, &[0.0, 0.4, -0.2, 0.5]);
         let wanted = [
-            (Some(Touch), Side::Cb, 0.0),
-            (Some(Release), Side::Cb, 0.0),
-            (Some(Touch), Side::Cb, 0.0),
+            (Touch, Side::Cb, 0.0),
+            (Release, Side::Cb, 0.0),
+            (Touch, Side::Cb, 0.0),
         ];
         assert_eq!(found, wanted);
     }
@@ -123,8 +128,8 @@ mod tests {
     #[test]
     fn a_whole_turn_touches_from_behind() {
         let found = events(&TURNS, &[0.2, 6.0, 7.0]);
-        assert_eq!(found[0], (Some(WhiskEventKind::Touch), Side::Cb, TAU));
-        assert_eq!(found[1], (None, Side::Cb, TAU + 0.5));
+        assert_eq!(found[0], (WhiskEventKind::Touch, Side::Cb, TAU));
+        assert_eq!(found[1], (WhiskEventKind::SlipOff, Side::Cb, TAU + 0.5));
         assert_eq!(found.len(), 2);
     }
 
@@ -147,12 +152,12 @@ mod tests {
     fn a_whisker_on_the_pole_is_undecided() {
         let thick = Turns {
             cf_touch: 0.4,
-            cb_end: 0.2,
-            cf_end: Some(0.1),
+            cb_end: slip_off(0.2),
+            cf_end: Some(slip_off(0.1)),
         };
         let mut phase = Phase::Free { after: -1 };
         let mut last = None;
-        thick.pass(&mut phase, -0.1, 0.35, |passage| last = passage.event);
+        thick.pass(&mut phase, -0.1, 0.35, |passage| last = Some(passage.event));
         assert_eq!(last, Some(WhiskEventKind::Undecided));
         let reason = Undecided::OnThePole;
         assert_eq!(
@@ -166,7 +171,7 @@ mod tests {
         assert_eq!(phase, Phase::Free { after: 0 });
         // A side that holds the whisker takes it over.
         let held = Turns {
-            cf_end: Some(0.3),
+            cf_end: Some(slip_off(0.3)),
             ..thick
         };
         let mut phase = Phase::Free { after: -1 };
@@ -192,11 +197,6 @@ mod tests {
 
     #[test]
     fn a_contact_begins_on_the_side_that_holds_the_whisker() {
-        let turns = Turns {
-            cf_touch: 0.1,
-            cb_end: 0.5,
-            cf_end: Some(0.7),
-        };
         let contact = |side, obstacle| Some(Phase::Contact { side, obstacle });
         for (angle, wanted) in [
             (0.3, contact(Side::Cb, 0)),
@@ -207,11 +207,11 @@ mod tests {
             (0.3 - TAU, contact(Side::Cb, -1)),
             (TAU - 0.3, contact(Side::Cf, 1)),
         ] {
-            assert_eq!(turns.held(angle).next(), wanted, "{angle}");
+            assert_eq!(TURNS.held(angle).next(), wanted, "{angle}");
         }
         let short = Turns {
             cf_end: None,
-            ..turns
+            ..TURNS
         };
         assert_eq!(short.held(-0.3).next(), None);
     }
@@ -219,11 +219,6 @@ mod tests {
     /// Without its history, a whisker is free or in a contact that holds it. It is certainly free only beyond the ends of both pushes.
     #[test]
     fn a_whisker_of_unknown_history_has_all_possible_phases() {
-        let turns = Turns {
-            cf_touch: 0.1,
-            cb_end: 0.5,
-            cf_end: Some(0.7),
-        };
         let (before, past) = (Phase::Free { after: -1 }, Phase::Free { after: 0 });
         let [cb, cf] = [Side::Cb, Side::Cf].map(|side| Phase::Contact { side, obstacle: 0 });
         let reason = Undecided::OnThePole;
@@ -238,7 +233,7 @@ mod tests {
             (0.3, vec![past, cb]),
             (0.55, vec![past]),
         ] {
-            assert_eq!(turns.possible(angle), wanted, "{angle}");
+            assert_eq!(TURNS.possible(angle), wanted, "{angle}");
         }
     }
 }

@@ -10,7 +10,7 @@ use whiskmap::engine::Spectral;
 use whiskmap::friction::Sliding;
 use whiskmap::map::{Panel, Summary};
 use whiskmap::scene::Scene;
-use whiskmap::trace::{Branch, WhiskerShape};
+use whiskmap::trace::Branch;
 use whiskmap::{Error, Options, for_each_panel};
 
 fn map(friction: f64) -> (Summary, Panel) {
@@ -121,7 +121,7 @@ fn cells_that_slide_toward_the_base_are_marked() {
             let side = Side::of_push(*push);
             let branch = branches[usize::from(side == Side::Cb)].as_ref().unwrap();
             let state = branch.state(push.to_radians(), true).unwrap();
-            let sliding = WhiskerShape::new(branch, &state, 2).state.sliding;
+            let sliding = branch.shape(&state, 2).state.sliding;
             assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
             assert_eq!(
                 sliding == Some(Sliding::Sticks),

@@ -6,7 +6,7 @@ use whiskmap::mechanics::rod::{Rest, Rod, Side, arclength};
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::{CurveNode, LevelCurve, Row, Stretch};
-use whiskmap::trace::{Branch, WhiskerShape};
+use whiskmap::trace::Branch;
 
 /// Half the push angle between the states of a central difference, in radians; the error is proportional to its square.
 const HALF: f64 = 1e-4;
@@ -59,7 +59,7 @@ fn friction_takes_energy_where_the_contact_slides() {
                     }
                     counts[sliding as usize] += 1;
                     assert_eq!(
-                        WhiskerShape::new(&branch, &state, 2).state.sliding,
+                        branch.shape(&state, 2).state.sliding,
                         Some(sliding),
                         "{case}"
                     );

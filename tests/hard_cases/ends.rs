@@ -11,7 +11,7 @@ use whiskmap::mechanics::rod::{Rod, Side};
 use whiskmap::mechanics::shooting::batch::Method;
 use whiskmap::scene::Scene;
 use whiskmap::sheet::Sheet;
-use whiskmap::trace::{Detachment, DetachmentKind, NoState, WhiskerShape};
+use whiskmap::trace::{Detachment, DetachmentKind, NoState};
 
 /// Distance before and after an end at which shapes and maps are computed, in degrees.
 const BESIDE: f64 = 1e-6;
@@ -35,7 +35,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     let shape = |push: f64| {
         let branch = branch.as_ref().map_err(|why| *why)?;
         let state = branch.state(push.to_radians(), true)?;
-        Ok(WhiskerShape::new(branch, &state, 200))
+        Ok(branch.shape(&state, 200))
     };
     let beside = BESIDE * end.side.sign();
     let pulled_at_touch = push.abs() < BESIDE;

@@ -4,7 +4,9 @@ use super::{EVERY_BRANCH, POLE, branches_at_9_mm, whisker};
 use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
 use whiskmap::scene::Pole;
-use whiskmap::trace::{Branch, BranchMark, BranchPoint, DetachmentKind, NoState, StableBranch};
+use whiskmap::trace::{
+    Branch, BranchMark, BranchPoint, DetachmentKind, NoState, PushLoad, StableBranch,
+};
 
 /// Runs `check` on the branch of every whisker that reaches its pole, with `count` points.
 fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)) {
@@ -43,7 +45,9 @@ fn the_stable_part_has_the_states_of_the_branch() {
         let case = traced.case();
         let part = StableBranch::new(&traced.whisker, &traced.pole, traced.side, 9.0).unwrap();
         let end = branch.stable_end_deg();
-        assert_eq!(part.end_deg(), end, "{case}");
+        assert_eq!(part.stable_end_deg(), end, "{case}");
+        let moments = [&part, &**branch].map(|part| part.rough_peak(PushLoad::BaseMoment));
+        assert_eq!(moments[0], moments[1], "{case}");
         for share in [-0.1, 0.01, 0.3, 0.7, 0.99, 1.1] {
             let push = (share * end).to_radians();
             assert_eq!(part.state(push), branch.state(push, true), "{case}");

@@ -2,7 +2,7 @@
 
 use super::{POLE, branches_at_9_mm, everything, whisker};
 use whiskmap::Side;
-use whiskmap::trace::{Branch, WhiskerPart, WhiskerShape};
+use whiskmap::trace::{Branch, WhiskerPart};
 
 /// The base is at the origin and rotated by the push angle, the contact touches the pole, and the moment at the base
 /// equals that of the pole's force.
@@ -17,7 +17,7 @@ fn a_shape_fits_its_state() {
                 continue;
             };
             let state = branch.state(push.to_radians(), stable).unwrap();
-            let shape = WhiskerShape::new(branch, &state, 100);
+            let shape = branch.shape(&state, 100);
             let base = shape.points[0];
             assert!(base.x_mm.hypot(base.y_mm) < 2e-10, "{case}: {base:?}");
             assert!((base.angle_deg + push).abs() < 2e-9, "{case}: {base:?}");
@@ -79,7 +79,7 @@ fn a_shape_is_a_curve() {
     let branch = Branch::new(&whisker(1.5, 0.02), &POLE, Side::Cb, 15.0).unwrap();
     let state = branch.state(0.2, true).unwrap();
     let error = |count: usize| {
-        let points = WhiskerShape::new(&branch, &state, count).points;
+        let points = branch.shape(&state, count).points;
         let mut worst = [0.0_f64; 2];
         for triple in points.windows(3) {
             let [a, b, c] = [triple[0], triple[1], triple[2]];
@@ -108,12 +108,12 @@ fn without_a_push_the_whisker_is_at_rest() {
     for (traced, branch) in branches_at_9_mm().filter(|(traced, _)| traced.side == Side::Cf) {
         let state = branch.state(0.0, true).unwrap();
         // The contact is an additional point.
-        let shape = WhiskerShape::new(branch, &state, 50);
+        let shape = branch.shape(&state, 50);
         let places = shape
             .points
             .iter()
             .filter(|point| point.part != WhiskerPart::Contact);
-        for (point, [x, y]) in places.zip(WhiskerShape::at_rest(branch, 50)) {
+        for (point, [x, y]) in places.zip(branch.at_rest(50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
             assert!(miss < 1e-10, "{}: {point:?} {x} {y}", traced.case());
         }
@@ -129,7 +129,7 @@ fn a_shape_is_exact_at_every_count() {
             let branch = Branch::new(&whisker, &pole, side, distance).unwrap();
             let state = branch.state(side.sign() * 1.2, true).unwrap();
             for count in [2, 5, 20, 333] {
-                let base = WhiskerShape::new(&branch, &state, count).points[0];
+                let base = branch.shape(&state, count).points[0];
                 let miss = base.x_mm.hypot(base.y_mm);
                 assert!(
                     miss < 1e-10,

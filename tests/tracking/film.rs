@@ -5,7 +5,7 @@ use whiskmap::Side;
 use whiskmap::force::{CurvatureFrames, ForceMethod, forces};
 use whiskmap::input::CsvTable;
 use whiskmap::scene::Scene;
-use whiskmap::trace::{Branch, WhiskerShape};
+use whiskmap::trace::Branch;
 use whiskmap::tracking::ImagePole;
 
 /// Frames of the cone that is pushed against its pole until it slips off, without errors: angle, position, contact and force come back.
@@ -16,9 +16,9 @@ fn a_push_until_slip_off_comes_back() {
     let branch = Branch::new(&whisker, &scene.pole, Side::Cb, 15.66).unwrap();
     let shape = |push: f64| {
         let state = branch.state(push.to_radians(), true).unwrap();
-        WhiskerShape::new(&branch, &state, 61)
+        branch.shape(&state, 61)
     };
-    let rest = WhiskerShape::at_rest(&branch, 61);
+    let rest = branch.at_rest(61);
     // The image is turned by 20 degrees.
     let pixel = |[x, y]: [f64; 2], turn_deg: f64| {
         let (sin, cos) = (20.0 + turn_deg).to_radians().sin_cos();

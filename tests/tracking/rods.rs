@@ -137,7 +137,7 @@ fn film_of(
     let scene = Scene::parse(scene, "scene.toml").unwrap();
     let whisker = scene.first_whisker().whisker;
     let branch = Branch::new(&whisker, &scene.pole, side, 14.0).unwrap();
-    let rest = WhiskerShape::at_rest(&branch, count);
+    let rest = branch.at_rest(count);
     let state = |push: f64| branch.state(push.to_radians(), true).ok();
     let mut pixel_error = {
         let mut bits = seed;
@@ -157,7 +157,7 @@ fn film_of(
     for step in -10..(2.0 * end) as i32 + 12 {
         let push = 0.25 + 0.5 * f64::from(step);
         let held = state(side.sign() * push).filter(|_| push > 0.0 && push < end);
-        let shape = held.map(|state| WhiskerShape::new(&branch, &state, count));
+        let shape = held.map(|state| branch.shape(&state, count));
         let push = side.sign() * push;
         let points: Vec<[f64; 2]> = match &shape {
             Some(shape) => {
@@ -175,7 +175,7 @@ fn film_of(
         truth.push(Truth { push, shape });
     }
     let first = state(side.sign()).unwrap();
-    let [x, y] = WhiskerShape::new(&branch, &first, 2).pole_mm;
+    let [x, y] = branch.shape(&first, 2).pole_mm;
     (text, [x / SCALE, 300.0 - y / SCALE], truth)
 }
 

@@ -6,7 +6,7 @@ use super::failure::{Failure, notes};
 use super::files::{Files, STDOUT};
 use clap::Args;
 use std::path::{Path, PathBuf};
-use whiskmap::scene::digits;
+use whiskmap::scene::{digits, rounded};
 use whiskmap::whisk::{AngleCourse, WhiskEventKind};
 
 #[derive(Debug, Args)]
@@ -79,6 +79,14 @@ impl CourseArgs {
             (_, Some(sine)) => format!("--sine {}", sine.map(digits).join(",")),
             _ => String::new(),
         }
+    }
+}
+
+/// Returns the text of an energy in nJ, which is NaN if it is not known.
+pub fn energy(nj: f64) -> String {
+    match nj.is_nan() {
+        true => "an unknown energy".to_owned(),
+        false => format!("{} nJ", digits(rounded(nj, 6))),
     }
 }
 

@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::scene::digits;
-use whiskmap::trace::{Branch, NoState, ShapePoint, WhiskerShape};
+use whiskmap::trace::{Branch, NoState, ShapePoint};
 use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
@@ -87,10 +87,11 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
         }
         _ => Failure::Input(format!("--push-angle {push_deg} deg: {why}")),
     };
-    let branch = Branch::new(&whisker, &scene.pole, side, distance).map_err(refused)?;
-    let state = branch.state(push_deg.to_radians(), stable);
+    let pushed = (&whisker, &scene.pole, side);
+    let found = Branch::at_push(pushed, distance, push_deg.to_radians(), stable);
+    let (branch, state) = found.map_err(refused)?;
     let count = args.points as usize;
-    let shape = WhiskerShape::new(&branch, &state.map_err(refused)?, count);
+    let shape = branch.shape(&state, count);
     let points = shape.points.iter();
     outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
     let mark = YieldMark::new(&whisker, shape.state.peak_strain);
@@ -108,7 +109,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     };
     let plot = || {
         let mut plot = shapes("", &[drawn]);
-        let at_rest = WhiskerShape::at_rest(&branch, count);
+        let at_rest = branch.at_rest(count);
         let at_rest = Line::new(at_rest, Ink::Grey, Stroke::Solid).named("first touch");
         plot.lines.insert(0, at_rest);
         let traced = scene.traced().into_iter();

@@ -1,7 +1,7 @@
 //! Command `whiskmap texture`.
 
 use super::arguments::column_help;
-use super::course::{CourseArgs, counts};
+use super::course::{CourseArgs, counts, energy};
 use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
@@ -11,7 +11,6 @@ use clap::Args;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::render::textures;
-use whiskmap::scene::{digits, rounded};
 use whiskmap::texture::{
     AsperityStay, Texture, TextureError, TextureEvent, TexturePhase, TextureSample, TipBin,
     texture_until,
@@ -115,10 +114,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
 fn summarise(texture: &Texture) {
     let events = texture.events.iter().map(|event| event.event);
     let [touches, releases, slips, pulls, _] = counts(events);
-    let lost = match texture.lost_nj() {
-        lost if lost.is_nan() => "an energy that is not known".to_owned(),
-        lost => format!("{} nJ", digits(rounded(lost, 6))),
-    };
+    let lost = energy(texture.lost_nj());
     let reached = texture.reached;
     message(&format!(
         "{reached} asperities within reach; touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; \

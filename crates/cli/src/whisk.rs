@@ -1,7 +1,7 @@
 //! Command `whiskmap whisk`.
 
 use super::arguments::{column_help, duration, named};
-use super::course::{CourseArgs, counts};
+use super::course::{CourseArgs, counts, energy};
 use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
@@ -10,7 +10,6 @@ use super::pole::{self, PoleArgs, refuse, title};
 use clap::{ArgGroup, Args};
 use std::path::PathBuf;
 use whiskmap::render::courses;
-use whiskmap::scene::{digits, rounded};
 use whiskmap::whisk::{
     self, CourseStart, Whisk, WhiskError, WhiskEvent, WhiskOptions, WhiskSample,
 };
@@ -89,15 +88,13 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
 fn summarise(whisk: &Whisk) {
     let events = whisk.events.iter().map(|event| event.event);
     let [touches, releases, slips, pulls, snaps] = counts(events);
-    let [lost, taken] = [whisk.lost_nj(), whisk.dissipated_nj()];
-    let [lost, dissipated] = [lost, taken].map(|energy| match energy.is_nan() {
-        true => "an unknown energy".to_owned(),
-        false => format!("{} nJ", digits(rounded(energy, 6))),
-    });
+    let dissipated = whisk.dissipated_nj();
+    let lost = energy(whisk.lost_nj());
     message(&format!(
         "touches {touches}, releases {releases}, slip-offs {slips}, pull-offs {pulls}; detachments lose {lost}"
     ));
-    if taken != 0.0 {
+    if dissipated != 0.0 {
+        let dissipated = energy(dissipated);
         message(&format!("snaps {snaps}; friction dissipates {dissipated}"));
     }
     warnings(whisk.warnings());

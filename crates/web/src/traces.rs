@@ -26,7 +26,7 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
         Ok((branch, found, shape)) => json!({
             "regime": Regime::Contact.name(),
             "status": status(shape.state.sliding).name(),
-            "values": { "margin_deg": (branch.end_deg() - push_deg).abs(), "residual": shape.residual, "contact_distance_mm": branch.read(found).contact_distance_mm },
+            "values": { "margin_deg": (branch.stable_end_deg() - push_deg).abs(), "residual": shape.residual, "contact_distance_mm": branch.read(found).contact_distance_mm },
         }),
         _ => cell(scene, push_deg, distance_mm)?,
     };
@@ -107,7 +107,7 @@ pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: u
         let shape = pushed.map(|(_, branch)| {
             let branch = branch.as_ref().map_err(|why| *why)?;
             let state = branch.state(push_deg.to_radians(), false)?;
-            Ok(WhiskerShape::new(branch, &state, POINTS))
+            Ok(branch.shape(&state, POINTS))
         });
         shape.map(drawn)
     });

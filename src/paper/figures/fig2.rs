@@ -4,7 +4,7 @@ use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, CYLINDER, POLE, pole_distance_mm};
 use crate::render::{DrawnShape, Ink, Inset, Plot, Stroke, shapes};
 use crate::scene::Whisker;
-use crate::trace::{Branch, BranchMark, BranchPoint, NoState, WhiskerShape};
+use crate::trace::{Branch, BranchMark, BranchPoint, NoState};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 
@@ -66,7 +66,7 @@ fn panel(
     let mut rows = Vec::new();
     for &(solution, push_angle_deg, stroke) in states {
         let found = branch.state(push_angle_deg.to_radians(), stroke == Stroke::Solid)?;
-        let shape = WhiskerShape::new(branch, &found, POINTS);
+        let shape = branch.shape(&found, POINTS);
         let state = ShapeState {
             solution,
             push_angle_deg,

@@ -4,7 +4,7 @@ use super::{Figure, FigureError, FigurePanel, figure};
 use crate::paper::whiskers::{FIG4_HAIR, FIG4_WHISKER, FIG5_RIGHT, POLE};
 use crate::render::{Disc, Ink, Line, Plot, STUCK, Stroke};
 use crate::scene::Whisker;
-use crate::whisk::{AngleCourse, CourseShapes, Whisk, WhiskEventKind, WhiskRegime, whisk};
+use crate::whisk::{AngleCourse, CourseShapes, Whisk, WhiskRegime, whisk};
 use serde::Serialize;
 use std::f64::consts::TAU;
 
@@ -59,9 +59,8 @@ impl Motion {
         every: usize,
     ) -> Result<FigurePanel, FigureError> {
         let samples = &self.whisk.samples;
-        let kinds = [WhiskEventKind::SlipOff, WhiskEventKind::PullOff];
         let mut events = self.whisk.events.iter();
-        let end = events.find(|event| kinds.contains(&event.event));
+        let end = events.find(|event| event.event.is_detachment());
         let after =
             samples.partition_point(|sample| end.is_none_or(|end| sample.time_s < end.time_s));
         let (mut lines, mut rows) = (Vec::new(), Vec::new());

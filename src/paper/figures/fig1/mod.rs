@@ -7,7 +7,7 @@ use super::{Figure, FigurePanel, lettered};
 use crate::paper::whiskers::{CONE, FIG5_LEFT, POLE};
 use crate::render::{Disc, Ink, Line, Note, Plot, Stroke};
 use crate::scene::Whisker;
-use crate::trace::{Branch, NoState, WhiskerShape};
+use crate::trace::{NoState, StableBranch};
 use glam::DVec2;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
@@ -109,8 +109,8 @@ fn sides() -> Result<FigurePanel, NoState> {
         (Side::Cf, "cf", "CF: \u{3b8}_{p} < 0", -APART_MM),
         (Side::Cb, "cb", "CB: \u{3b8}_{p} > 0", 0.0),
     ] {
-        let branch = Branch::new(&CONE, &POLE, side, TOUCH_MM)?;
-        let points = WhiskerShape::at_rest(&branch, POINTS);
+        let branch = StableBranch::new(&CONE, &POLE, side, TOUCH_MM)?;
+        let points = branch.at_rest(POINTS);
         rows.extend(whisker_points(name, &points));
         let moved = |points: &[[f64; 2]]| -> Vec<_> {
             points.iter().map(|[x, y]| [x + start, *y]).collect()

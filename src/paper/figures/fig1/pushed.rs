@@ -5,7 +5,7 @@ use crate::paper::figures::FigurePanel;
 use crate::paper::figures::drawing::arc;
 use crate::paper::whiskers::{CONE, POLE};
 use crate::render::{Disc, Dot, Ink, Inset, Line, Note, Stroke};
-use crate::trace::{Branch, NoState, ShapePoint, WhiskerPart, WhiskerShape};
+use crate::trace::{NoState, ShapePoint, StableBranch, WhiskerPart, WhiskerShape};
 use glam::DVec2;
 use whiskmap_mechanics::rod::{Rest, Side};
 
@@ -23,16 +23,16 @@ struct PushedWhisker {
 
 impl PushedWhisker {
     fn new() -> Result<Self, NoState> {
-        let branch = Branch::new(&CONE, &POLE, Side::Cb, TOUCH_MM)?;
-        let state = branch.state(PUSH_DEG.to_radians(), true)?;
-        let shape = WhiskerShape::new(&branch, &state, POINTS);
+        let branch = StableBranch::new(&CONE, &POLE, Side::Cb, TOUCH_MM)?;
+        let state = branch.state(PUSH_DEG.to_radians())?;
+        let shape = branch.shape(&state, POINTS);
         let at = shape
             .points
             .iter()
             .find(|point| point.part == WhiskerPart::Contact);
         Ok(Self {
             contact: at.copied().unwrap_or(shape.points[0]),
-            at_rest: WhiskerShape::at_rest(&branch, POINTS),
+            at_rest: branch.at_rest(POINTS),
             distance_mm: branch.read(&state).contact_distance_mm,
             shape,
         })
