@@ -204,7 +204,7 @@ fn branches_agree_with_curves_on_random_rows() {
             let end = sheet.crossings[row][0];
             let last = found.nodes.last().unwrap();
             // A fold whose push changes by 1e-11 for an error of 1e-14 in `ln D` has a slope of at most 1000 radians.
-            let off = (side.sign() * last.push - end.push).abs();
+            let off = (side.sign() * last.signed_push - end.push).abs();
             assert!(
                 off < 1e-8 && found.end == Some(end.edge),
                 "{rod:?} {side:?} {distance} {off:e}"
@@ -215,7 +215,7 @@ fn branches_agree_with_curves_on_random_rows() {
                     is_last || pair[1].full.map.det() > 0.0,
                     "{rod:?} {side:?} {distance}"
                 );
-                let rise = side.sign() * (pair[1].push - pair[0].push);
+                let rise = side.sign() * (pair[1].signed_push - pair[0].signed_push);
                 assert!(rise > 0.0, "{rod:?} {side:?} {distance} {rise:e}");
             }
             compared += 1;

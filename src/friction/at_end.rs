@@ -41,9 +41,11 @@ pub fn surely_slides_to_end(
             let mut before: Option<CurveNode> = None;
             let knots = pairs.map(|(point, state)| {
                 let node = match before {
-                    Some(before) => level.node(point, &state.full, before.push, before.angle),
+                    Some(before) => {
+                        level.node(point, &state.full, before.signed_push, before.angle)
+                    }
                     None => CurveNode {
-                        push: 0.0,
+                        signed_push: 0.0,
                         ..level.node(point, &state.full, 0.0, 0.0)
                     },
                 };

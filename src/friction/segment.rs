@@ -25,7 +25,7 @@ impl SlidingKnot {
         let sign = level.side.sign();
         let rate = ContactRate::new(variation, &level.rod, node.point.x);
         Self {
-            push: sign * node.push,
+            push: sign * node.signed_push,
             slid: slid(&level.rod, &node),
             node,
             by_push: Some(rate.times(sign / variation.full.map.det())),
@@ -249,7 +249,7 @@ mod tests {
             node: CurveNode {
                 point: DVec2::ZERO,
                 full: FullState::default(),
-                push,
+                signed_push: push,
                 angle: 0.0,
             },
             by_push: by_push.is_finite().then_some(ContactRate {

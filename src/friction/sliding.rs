@@ -70,5 +70,5 @@ impl ContactRate {
 /// Returns the slid distance of the contact at `node`: its arclength minus the distance rolled around the pole, in whisker lengths.
 pub(super) fn slid(rod: &Rod, node: &CurveNode) -> f64 {
     rod.pole
-        .mul_add(node.angle - node.push, arclength(rod, node.point.x))
+        .mul_add(node.angle - node.signed_push, arclength(rod, node.point.x))
 }

@@ -63,7 +63,7 @@ impl FrictionState {
         CurveNode {
             point: self.at.point,
             full: self.variation.full,
-            push,
+            signed_push: push,
             angle: self.at.angle,
         }
     }

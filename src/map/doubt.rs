@@ -43,7 +43,7 @@ pub fn solve(
         let mut spans = boundary.spans().iter().zip(&pieces);
         match spans.find(|(span, _)| span.contains(push)) {
             Some((span, Some(nodes))) => {
-                let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].push);
+                let [first, last] = [0, nodes.len() - 1].map(|i| sign * nodes[i].signed_push);
                 if push > last {
                     cells.outcome[column] = beyond(span.end.edge);
                 } else {
@@ -78,7 +78,8 @@ fn first_touch(level: &LevelCurve, signed_push: f64) -> Option<ContactState> {
     let map = &touch.full.map;
     let step = map.solve(map.residual(level.row.pole(signed_push)));
     let stepped = level.correct(&[touch.point + step], ON_CURVE).pop()?;
-    let stepped = stepped.map(|(point, full)| level.node(point, &full, touch.push, touch.angle));
+    let stepped =
+        stepped.map(|(point, full)| level.node(point, &full, touch.signed_push, touch.angle));
     [Some(touch), stepped]
         .into_iter()
         .flatten()

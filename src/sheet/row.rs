@@ -59,11 +59,11 @@ impl Row {
         reader.at_first_touch(self.contact.min(self.end), self.touch)
     }
 
-    /// Returns the pole's centre in the frame of the base, in whisker lengths, after the base has turned by `push` radians since first
-    /// touch.
+    /// Returns the pole's centre in the frame of the base, in whisker lengths, after the base has turned by `signed_push` radians since
+    /// first touch.
     #[must_use]
-    pub fn pole(&self, push: f64) -> DVec2 {
-        self.pole_distance * DVec2::from_angle(self.touch + push)
+    pub fn pole(&self, signed_push: f64) -> DVec2 {
+        self.pole_distance * DVec2::from_angle(self.touch + signed_push)
     }
 }
 

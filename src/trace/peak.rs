@@ -77,7 +77,7 @@ impl StableBranch {
         let is_before = size > last * (1.0 + AT_END);
         PushPeak {
             size,
-            before_end_deg: is_before.then(|| node.push.to_degrees()),
+            before_end_deg: is_before.then(|| node.signed_push.to_degrees()),
         }
     }
 

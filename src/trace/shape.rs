@@ -72,10 +72,10 @@ impl StableBranch {
         // Rotation from the axes of the contact to the axes of first touch, where the base's tangent is at `-push`.
         let base = &found.full;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);
-        let turn = DVec2::from_angle(-found.push).rotate(to_base);
+        let turn = DVec2::from_angle(-found.signed_push).rotate(to_base);
         let pole = turn.rotate(rod.to_pole() - base.position);
         let length = units.length_mm;
-        let mut angle = -found.push;
+        let mut angle = -found.signed_push;
         let points = places.iter().enumerate().map(|(i, place)| {
             let RodPoint {
                 position, tangent, ..
@@ -102,7 +102,7 @@ impl StableBranch {
             points: points.collect(),
             pole_mm: (pole * length).to_array(),
             pole_radius_mm: rod.pole.abs() * length,
-            residual: found.full.map.pole.distance(row.pole(found.push)),
+            residual: found.full.map.pole.distance(row.pole(found.signed_push)),
             state: self.point_of(found),
         }
     }

@@ -77,7 +77,7 @@ impl StableBranch {
     #[must_use]
     pub fn stable_end_deg(&self) -> f64 {
         let stable = self.path.stable();
-        stable[stable.len() - 1].push.to_degrees()
+        stable[stable.len() - 1].signed_push.to_degrees()
     }
 
     /// Returns true if a push detaches at the end of the stable states. With friction, it does not if the contact sticks there.
@@ -91,7 +91,7 @@ impl StableBranch {
     /// Returns the error of a failed continuation or corrector.
     pub(super) fn failed(&self) -> NoState {
         let nodes = &self.path.nodes;
-        let push_deg = nodes[nodes.len() - 1].push.to_degrees();
+        let push_deg = nodes[nodes.len() - 1].signed_push.to_degrees();
         NoState::Failed { push_deg }
     }
 
@@ -117,7 +117,7 @@ impl StableBranch {
             distance_mm: self.distance_mm,
             side: *side,
             stable: state.stable,
-            push_angle_deg: state.push.to_degrees(),
+            push_angle_deg: state.signed_push.to_degrees(),
             contact_angle_deg: state.angle.to_degrees(),
             peak_strain: peak.strain * self.units.strain,
             peak_strain_mm: peak.arclength * self.units.length_mm,

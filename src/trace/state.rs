@@ -15,7 +15,7 @@ pub struct StateAtPush {
     /// Signed load `f/rho^2` of the state, dimensionless.
     pub load: f64,
     /// Push angle of the state as requested, signed, in radians.
-    pub push: f64,
+    pub signed_push: f64,
     /// Angle of the tangent at the contact, from the base's tangent, in radians.
     pub angle: f64,
     /// True if the state at the push angle is stable.
@@ -34,7 +34,7 @@ impl StateAtPush {
         Self {
             tau: node.point.x,
             load: node.point.y,
-            push: node.push,
+            signed_push: node.signed_push,
             angle: node.angle,
             stable,
             ratio,
@@ -53,7 +53,7 @@ impl StableBranch {
             state.tau,
             &state.full,
             self.path.level.row.touch,
-            state.push,
+            state.signed_push,
         )
     }
 
@@ -63,45 +63,49 @@ impl StableBranch {
         self.point(state, self.peaks(std::slice::from_ref(state))[0])
     }
 
-    /// Returns the stable state at the signed `push`, in radians.
+    /// Returns the stable state at `signed_push`, in radians.
     ///
     /// # Errors
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
-    pub fn state(&self, push: f64) -> Result<StateAtPush, NoState> {
+    pub fn state(&self, signed_push: f64) -> Result<StateAtPush, NoState> {
         let Path { level, fold, .. } = &self.path;
         let left = |[touch, end]: [f64; 2]| {
             let at_deg = end.to_degrees();
             match fold {
-                _ if level.side.sign() * push < 0.0 => NoState::LostTouch {
+                _ if level.side.sign() * signed_push < 0.0 => NoState::LostTouch {
                     stays_deg: [touch.min(end), touch.max(end)].map(f64::to_degrees),
                 },
                 Some(_) => NoState::SlippedOff { at_deg },
                 None => NoState::PulledOff { at_deg },
             }
         };
-        let node = self.node_at(self.path.stable(), push, left)?;
+        let node = self.node_at(self.path.stable(), signed_push, left)?;
         Ok(self.pushed(&[node])?[0])
     }
 
-    /// Returns the node at the signed `push`, in radians, in a `part` of the path. Outside it, the error is what `outside` makes of its first
-    /// and last push.
+    /// Returns the node at `signed_push`, in radians, in a `part` of the path. Outside it, the error is what `outside` makes of its first
+    /// and last push angle.
     pub(super) fn node_at(
         &self,
         part: &[CurveNode],
-        push: f64,
+        signed_push: f64,
         outside: impl FnOnce([f64; 2]) -> NoState,
     ) -> Result<CurveNode, NoState> {
-        let ends @ [first, last] = [part[0].push, part[part.len() - 1].push];
+        let ends @ [first, last] = [part[0].signed_push, part[part.len() - 1].signed_push];
         // A push angle that was printed in degrees may lie a few roundings beyond the end.
-        let inside = push.clamp(first.min(last), first.max(last));
-        let push = if (inside - push).abs() <= 8.0 * f64::EPSILON * push.abs() {
+        let inside = signed_push.clamp(first.min(last), first.max(last));
+        let signed_push = if (inside - signed_push).abs() <= 8.0 * f64::EPSILON * signed_push.abs()
+        {
             inside
         } else {
-            push
+            signed_push
         };
-        let node = self.path.level.state_at_push(part, push);
-        let node = node.map(|node| CurveNode { push, ..node });
-        node.ok_or_else(|| match push == inside {
+        let node = self.path.level.state_at_push(part, signed_push);
+        let node = node.map(|node| CurveNode {
+            signed_push,
+            ..node
+        });
+        node.ok_or_else(|| match signed_push == inside {
             true => self.failed(),
             false => outside(ends),
         })
@@ -126,22 +130,24 @@ impl StableBranch {
             return nodes.iter().map(|node| Ok(unmoved(node, None))).collect();
         }
         let lost = |node: &CurveNode| NoState::NoCourse {
-            push_deg: node.push.to_degrees(),
+            push_deg: node.signed_push.to_degrees(),
         };
         let Some(history) = &self.history else {
             return nodes.iter().map(|node| Err(lost(node))).collect();
         };
-        let phases = nodes.iter().map(|node| history.phase(sign * node.push));
+        let phases = nodes
+            .iter()
+            .map(|node| history.phase(sign * node.signed_push));
         let phases: Vec<ContactPhase> = phases.collect();
         // At first touch there is no load, and so no friction.
         let is_moved = |phase: &ContactPhase, node: &CurveNode| {
-            phase.sliding() != Sliding::Tip && sign * node.push > 0.0
+            phase.sliding() != Sliding::Tip && sign * node.signed_push > 0.0
         };
         let pairs = || nodes.iter().zip(&phases);
         let moved = pairs().filter(|(node, phase)| is_moved(phase, node));
         let queries = moved.map(|(node, phase)| ContactQuery {
             history,
-            push: sign * node.push,
+            push: sign * node.signed_push,
             phase: *phase,
         });
         let mut found = states(&queries.collect::<Vec<_>>()).into_iter();
@@ -151,7 +157,7 @@ impl StableBranch {
             }
             let state: FrictionState = found.next().flatten().ok_or_else(|| lost(node))?;
             Ok(StateAtPush::of(
-                &state.node(node.push),
+                &state.node(node.signed_push),
                 true,
                 state.at.ratio,
                 Some(state.sliding),

@@ -139,7 +139,7 @@ fn sliding_is_what_is_not_rolled() {
 
 /// Slid distance of the contact: arclength minus the distance rolled around the pole, in whisker lengths.
 fn place(rod: &Rod, node: &CurveNode) -> f64 {
-    arclength(rod, node.point.x) + rod.pole * (node.angle - node.push)
+    arclength(rod, node.point.x) + rod.pole * (node.angle - node.signed_push)
 }
 
 /// Row of a branch, for any coefficient of friction.

@@ -33,8 +33,8 @@ pub struct CurveNode {
     pub point: DVec2,
     /// State of the node: pole with first derivatives, pose of the base, force and energy.
     pub full: FullState,
-    /// Signed push angle of the node since first touch, in radians, continuous along the curve.
-    pub push: f64,
+    /// Push angle of the node since first touch with its sign, in radians, continuous along the curve.
+    pub signed_push: f64,
     /// Tangent angle at the contact of the node, in radians from the base's tangent, continuous along the curve.
     pub angle: f64,
 }
@@ -92,17 +92,17 @@ impl LevelCurve {
         }
     }
 
-    /// Returns the node of a level curve with the state `full` at `point`, `(tau, load)`. Its angles are continued from `push` and
+    /// Returns the node of a level curve with the state `full` at `point`, `(tau, load)`. Its angles are continued from `signed_push` and
     /// `angle`, in radians.
     #[must_use]
-    pub fn node(&self, point: DVec2, full: &FullState, push: f64, angle: f64) -> CurveNode {
+    pub fn node(&self, point: DVec2, full: &FullState, signed_push: f64, angle: f64) -> CurveNode {
         let phi = full.map.pole.to_angle();
         let to_pole = self.rod.to_pole() - full.position;
         let tilt = self.rod.contact_tangent().to_angle();
         CurveNode {
             point,
             full: *full,
-            push: nearest_turn(phi - self.row.touch, push),
+            signed_push: nearest_turn(phi - self.row.touch, signed_push),
             angle: nearest_turn(phi - to_pole.to_angle() + tilt, angle),
         }
     }
@@ -136,7 +136,7 @@ impl LevelCurve {
     #[must_use]
     pub fn place(&self, node: &CurveNode) -> DVec3 {
         let s = arclength(&self.rod, node.point.x);
-        DVec3::new(node.push, node.angle, s)
+        DVec3::new(node.signed_push, node.angle, s)
     }
 
     /// Returns the Euclidean distance of two nodes in the coordinates of [`LevelCurve::place`]: radians and whisker lengths count alike.

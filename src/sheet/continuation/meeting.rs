@@ -99,7 +99,7 @@ impl Chord<'_> {
             let map = &node.full.map;
             sense * DVec2::new(map.by_tau.y, map.by_load.y)
         };
-        self.may_fall(sense * (self.to.push - self.from.push), by)
+        self.may_fall(sense * (self.to.signed_push - self.from.signed_push), by)
     }
 
     /// Returns true if the contact may move toward the base somewhere between the nodes.
@@ -256,7 +256,7 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<CurveNode>> {
         .map(|((chord, _), (iterate, corrected))| {
             let (point, full) = corrected?;
             let Chord { level, from, .. } = chord;
-            let node = level.node(point, &full, from.push, from.angle);
+            let node = level.node(point, &full, from.signed_push, from.angle);
             (iterate.has_converged && chord.has_near(&node)).then_some(node)
         })
         .collect()

@@ -171,9 +171,9 @@ mod tests {
             .continuation(level.touch(), Stretch::PastFold)
             .unwrap();
         let fold = branch.nodes[branch.fold.unwrap()];
-        let last = |nodes: &[CurveNode]| nodes[nodes.len() - 1].push / TAU;
+        let last = |nodes: &[CurveNode]| nodes[nodes.len() - 1].signed_push / TAU;
         assert!(
-            fold.push > 2.0 * TAU && last(&branch.nodes) < -1.5,
+            fold.signed_push > 2.0 * TAU && last(&branch.nodes) < -1.5,
             "{}",
             last(&branch.nodes)
         );
@@ -198,15 +198,15 @@ mod tests {
                 .unwrap();
             let fold = branch.fold.unwrap();
             for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
-                let [from, to] = [part[0].push, part[part.len() - 1].push];
+                let [from, to] = [part[0].signed_push, part[part.len() - 1].signed_push];
                 for i in 0..=200 {
                     let push = from + (to - from) * f64::from(i) / 200.0;
                     // Rounding may lead beyond the end.
                     let push = push.clamp(from.min(to), from.max(to));
                     let (node, root) = level.bracketed_push(part, push).unwrap();
-                    let left = (node.push - push).abs();
+                    let left = (node.signed_push - push).abs();
                     // The tolerance of the search: at the nodes around the state, not at the state itself.
-                    let miss = |node: &CurveNode| node.push - push;
+                    let miss = |node: &CurveNode| node.signed_push - push;
                     let is_around = |pair: &&[CurveNode]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
                     let around = part.windows(2).find(is_around).unwrap().iter();
                     let allowed = around.map(|node| level.rounding(node)).fold(0.0, f64::max);

@@ -43,7 +43,7 @@ impl Path {
             edge,
             tau: end.point.x,
             load: end.point.y,
-            push: level.side.sign() * end.push,
+            push: level.side.sign() * end.signed_push,
             residual: libm::log(level.row.pole_distance / distance).abs(),
             slope: edge.slope(&end.full.map),
         })
@@ -80,7 +80,7 @@ impl Path {
         states
             .map(|(near, corrected)| {
                 let (point, full) = corrected?;
-                Some(self.level.node(point, &full, near.push, near.angle))
+                Some(self.level.node(point, &full, near.signed_push, near.angle))
             })
             .collect()
     }

@@ -26,7 +26,7 @@ impl StablePiece {
     pub fn span(&self, side: Side) -> Option<RowSpan> {
         let node = |node: &CurveNode| SpanNode {
             w: node.point.y.abs() * node.point.x * node.point.x,
-            push: side.sign() * node.push,
+            push: side.sign() * node.signed_push,
             tau: node.point.x,
         };
         let mut nodes: Vec<SpanNode> = self.nodes.iter().map(node).collect();

@@ -21,7 +21,7 @@ impl LevelCurve {
         let FirstVariation { full, .. } =
             Batch::new(self.method).shoot_at(&self.rod, [at_touch])[0];
         CurveNode {
-            push: 0.0,
+            signed_push: 0.0,
             ..self.node(at_touch, &full, 0.0, 0.0)
         }
     }
@@ -34,21 +34,21 @@ impl LevelCurve {
         Some(self.node(point, &full, self.side.sign() * crossing.push, 0.0))
     }
 
-    /// Returns the level curve's state at the signed `push`, in radians, between two of the `nodes`, along which the push angle grows or
+    /// Returns the level curve's state at `signed_push`, in radians, between two of the `nodes`, along which the push angle grows or
     /// falls throughout. Returns `None` outside the nodes, or if the corrector fails.
     #[must_use]
-    pub fn state_at_push(&self, nodes: &[CurveNode], push: f64) -> Option<CurveNode> {
-        Some(self.bracketed_push(nodes, push)?.0)
+    pub fn state_at_push(&self, nodes: &[CurveNode], signed_push: f64) -> Option<CurveNode> {
+        Some(self.bracketed_push(nodes, signed_push)?.0)
     }
 
-    /// Returns the level curve's state at the signed `push`, in radians, and the root search that found it. The search uses no slopes,
+    /// Returns the level curve's state at `signed_push`, in radians, and the root search that found it. The search uses no slopes,
     /// because the slope of the push angle is zero at the fold.
     pub(super) fn bracketed_push(
         &self,
         nodes: &[CurveNode],
-        push: f64,
+        signed_push: f64,
     ) -> Option<(CurveNode, Root)> {
-        let miss = |node: &CurveNode| node.push - push;
+        let miss = |node: &CurveNode| node.signed_push - signed_push;
         let is_between = |pair: &&[CurveNode]| miss(&pair[0]) * miss(&pair[1]) <= 0.0;
         let [from, to] = nodes.windows(2).find(is_between)? else {
             return None;
@@ -57,11 +57,11 @@ impl LevelCurve {
         let mut best = if is_from_closer { *from } else { *to };
         let ends = [[0.0, miss(from)], [1.0, miss(to)]];
         // The corrector leaves an error of this size.
-        let tolerance = self.rounding(from).max(self.rounding(to)) * push.abs().max(1.0);
+        let tolerance = self.rounding(from).max(self.rounding(to)) * signed_push.abs().max(1.0);
         let root = illinois(ends, tolerance, |part| {
             let start = from.point.lerp(to.point, part);
             let (point, full) = self.correct(&[start], ON_CURVE).pop()??;
-            let node = self.node(point, &full, from.push, from.angle);
+            let node = self.node(point, &full, from.signed_push, from.angle);
             if miss(&node).abs() < miss(&best).abs() {
                 best = node;
             }

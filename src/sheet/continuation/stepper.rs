@@ -128,7 +128,7 @@ impl<'a> Stepper<'a> {
         let push = self
             .nodes
             .last()
-            .map(|last| self.level.side.sign() * last.push);
+            .map(|last| self.level.side.sign() * last.signed_push);
         push.is_some_and(|push| push < least || push > most)
     }
 
@@ -153,7 +153,7 @@ impl<'a> Stepper<'a> {
         let moved = (point - last.point) / scale;
         let corrected = (point - self.predicted) / scale;
         let is_ahead = moved.dot(self.along) > 0.5 * moved.length();
-        let next = level.node(point, &full, last.push, last.angle);
+        let next = level.node(point, &full, last.signed_push, last.angle);
         let chord = self.chord(next);
         let is_predicted = corrected.length() <= MOST_CORRECTED * moved.length();
         let is_on_branch = chord.turn() < if is_predicted { MOST_TURN } else { LEAST_TURN };

@@ -210,11 +210,11 @@ impl Reader {
         }
     }
 
-    /// Returns the reading of the state `full` with the contact at `tau`, at the signed push angle `push` from first touch in the
+    /// Returns the reading of the state `full` with the contact at `tau`, at the push angle `signed_push` from first touch in the
     /// direction `touch`. Both angles are in radians.
     #[must_use]
-    pub fn read(&self, tau: f64, full: &FullState, touch: f64, push: f64) -> Reading {
-        Reading::of(self.values(tau, full, touch, push))
+    pub fn read(&self, tau: f64, full: &FullState, touch: f64, signed_push: f64) -> Reading {
+        Reading::of(self.values(tau, full, touch, signed_push))
     }
 
     /// Returns the channels of [`Reader::read`], in the order of [`Reading::CHANNELS`].
@@ -224,9 +224,9 @@ impl Reader {
         tau: f64,
         full: &FullState,
         touch: f64,
-        push: f64,
+        signed_push: f64,
     ) -> [f64; Reading::CHANNELS.len()] {
-        self.channels(self.numbers(tau, &full.plain(), touch + push, push))
+        self.channels(self.numbers(tau, &full.plain(), touch + signed_push, signed_push))
     }
 
     /// Returns the numbers of a `state` with the contact at `tau`. The pole is in the direction `phi` from the base, and `chord` is near the
