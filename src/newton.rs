@@ -150,11 +150,8 @@ impl BatchNewton {
             if open.is_empty() {
                 break;
             }
-            let conditions = open.iter().map(|&i| InitialCondition {
-                rod: problems[i].rod(),
-                tau: points[i].x,
-                load: points[i].y,
-            });
+            let condition = |i: &usize| InitialCondition::new(problems[*i].rod(), points[*i]);
+            let conditions = open.iter().map(condition);
             let conditions: Vec<InitialCondition> = conditions.collect();
             self.shoot(&conditions, |place, here: &P::Output| {
                 let i = open[place];

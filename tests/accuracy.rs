@@ -44,14 +44,7 @@ fn cells(scene: &Scene, whisker: &Whisker, side: Side, resolution: Resolution) -
     let (conditions, poles): (Vec<InitialCondition>, Vec<_>) =
         states(method, &sheet, &scene.grid.push_angle_deg)
             .into_iter()
-            .map(|(shot, state)| {
-                let condition = InitialCondition {
-                    rod: &rod,
-                    tau: state.point.x,
-                    load: state.point.y,
-                };
-                (condition, shot.pole)
-            })
+            .map(|(shot, state)| (InitialCondition::new(&rod, state.point), shot.pole))
             .unzip();
     let exact = Method::new(EXACT).with_effects(effects);
     let shot = Batch::new(exact).shoot::<ShootingMap>(&conditions);

@@ -185,11 +185,7 @@ fn residuals_are_bounds() {
                 assert!(!found.is_empty());
                 let conditions: Vec<InitialCondition> = found
                     .iter()
-                    .map(|(_, state)| InitialCondition {
-                        rod: &rod,
-                        tau: state.point.x,
-                        load: state.point.y,
-                    })
+                    .map(|(_, state)| InitialCondition::new(&rod, state.point))
                     .collect();
                 let shot = Batch::new(method).shoot::<ShootingMap>(&conditions);
                 for ((shot, state), map) in found.iter().zip(shot) {
@@ -217,13 +213,10 @@ fn the_energy_is_known_toward_the_tip() {
         let (tau, load) = (-f64::ln(radius), 6.0);
         let energy = |resolution: Resolution| {
             let method = Method::new(resolution);
-            Batch::new(method).shoot::<FirstVariation>(&[InitialCondition {
-                rod: &rod,
-                tau,
-                load,
-            }])[0]
-                .full
-                .energy
+            Batch::new(method).shoot::<FirstVariation>(&[InitialCondition::new(&rod, (tau, load))])
+                [0]
+            .full
+            .energy
         };
         let (energy, finer) = (energy(Resolution::FINE), energy(Resolution::FINE.doubled()));
         let apart = (energy / finer - 1.0).abs();

@@ -59,10 +59,9 @@ impl Solver {
         let mut hits: Vec<Hit> = targets.iter().map(start).collect();
         let mut open: Vec<usize> = (0..targets.len()).collect();
         for round in 0..=MOST_STEPS {
-            let condition = |&i: &usize| InitialCondition {
-                rod: &rods[targets[i].rod as usize],
-                tau: hits[i].tau,
-                load: hits[i].load,
+            let condition = |&i: &usize| {
+                let rod = &rods[targets[i].rod as usize];
+                InitialCondition::new(rod, (hits[i].tau, hits[i].load))
             };
             let conditions: Vec<InitialCondition> = open.iter().map(condition).collect();
             let maps: Vec<ShootingMap> = batch.shoot(&conditions);

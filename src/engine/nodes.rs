@@ -27,11 +27,7 @@ impl Nodes {
         let rods = self.rods.iter().zip(&self.points);
         let all = rods.flat_map(|(rod, points)| {
             let points = points.iter();
-            points.map(move |(tau, load)| InitialCondition {
-                rod,
-                tau: *tau,
-                load: *load,
-            })
+            points.map(move |point| InitialCondition::new(rod, *point))
         });
         all.collect()
     }

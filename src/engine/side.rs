@@ -126,11 +126,7 @@ impl WhiskerSide {
         let conditions: Vec<InitialCondition> = rods
             .iter()
             .zip(states)
-            .map(|(rod, state)| InitialCondition {
-                rod,
-                tau: state.at.point.x,
-                load: state.at.point.y,
-            })
+            .map(|(rod, state)| InitialCondition::new(rod, state.at.point))
             .collect();
         let peaks: Vec<PeakStrain> = self.strains().shoot(&conditions);
         peaks.iter().map(|peak| self.strain(peak)).collect()

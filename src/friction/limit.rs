@@ -171,11 +171,8 @@ impl<'a> LimitPart<'a> {
 fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     let known = parts.iter().flatten();
     let conditions = known.clone().flat_map(|part| {
-        part.nodes.iter().map(|node| InitialCondition {
-            rod: &part.level.rod,
-            tau: node.point.x,
-            load: node.point.y,
-        })
+        let nodes = part.nodes.iter();
+        nodes.map(|node| InitialCondition::new(&part.level.rod, node.point))
     });
     let conditions: Vec<InitialCondition> = conditions.collect();
     let method = known.clone().next().map(|part| part.level.method);

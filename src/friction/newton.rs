@@ -13,7 +13,7 @@ use super::state::{FrictionPoint, FrictionState};
 use crate::refine::TOLERANCE;
 use crate::sheet::LevelCurve;
 use glam::{DMat3, DVec2, DVec3};
-use whiskmap_mechanics::rod::{Rod, arclength};
+use whiskmap_mechanics::rod::arclength;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition};
 use whiskmap_mechanics::shooting::{FirstVariation, LONGEST_STEP, limited};
 
@@ -88,10 +88,7 @@ impl<'a> FrictionTarget<'a> {
 
 /// Returns the level curve of the row of `level` with this friction.
 pub fn with_friction(level: &LevelCurve, friction: f64) -> LevelCurve {
-    let rod = Rod {
-        friction,
-        ..level.rod.clone()
-    };
+    let rod = level.rod.with_friction(friction);
     LevelCurve::new(level.method, &rod, level.side, &level.row)
 }
 
@@ -157,11 +154,9 @@ fn approach(targets: &[FrictionTarget], order: Approach) -> Vec<Option<FrictionS
             [Some(target.level(ratio)), beside].map(|level| Some((level?, iterate.at.point)))
         });
         let levels: Vec<(LevelCurve, DVec2)> = levels.flatten().collect();
-        let conditions = levels.iter().map(|(level, point)| InitialCondition {
-            rod: &level.rod,
-            tau: point.x,
-            load: point.y,
-        });
+        let conditions = levels
+            .iter()
+            .map(|(level, point)| InitialCondition::new(&level.rod, *point));
         let shot: Vec<FirstVariation> = batch.shoot(&conditions.collect::<Vec<_>>());
         let mut shot = levels.iter().map(|(level, _)| level).zip(&shot);
         open.retain_mut(|(i, iterate)| {

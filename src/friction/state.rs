@@ -71,9 +71,6 @@ impl FrictionState {
     /// Returns `rod` with the force ratio of this state as its friction.
     #[must_use]
     pub fn rod(&self, rod: &Rod) -> Rod {
-        Rod {
-            friction: self.at.ratio,
-            ..rod.clone()
-        }
+        rod.with_friction(self.at.ratio)
     }
 }

@@ -74,14 +74,14 @@ impl Branch {
         StableBranch::followed((whisker, pole, side), distance_mm, Stretch::PastFold).map(Self)
     }
 
-    /// Computes the stable or the unstable state of `whisker` at `pole` at the signed `push`, in radians, with the part of the branch up to it.
+    /// Computes the stable or the unstable state of `whisker` at `pole` at `signed_push`, in radians, with the part of the branch up to it.
     ///
     /// # Errors
     /// Fails as [`StableBranch::new`] or [`Branch::new`] does, or if no such state exists.
     pub fn at_push(
         whisker_side: (&Whisker, &Pole, Side),
         distance_mm: f64,
-        push: f64,
+        signed_push: f64,
         stable: bool,
     ) -> Result<(StableBranch, StateAtPush), NoState> {
         let stretch = match stable {
@@ -89,17 +89,17 @@ impl Branch {
             false => Stretch::PastFold,
         };
         let branch = Self(StableBranch::followed(whisker_side, distance_mm, stretch)?);
-        let state = branch.state(push, stable)?;
+        let state = branch.state(signed_push, stable)?;
         Ok((branch.0, state))
     }
 
-    /// Returns the state at the signed `push`, in radians, on the stable or the unstable part of the branch.
+    /// Returns the state at `signed_push`, in radians, on the stable or the unstable part of the branch.
     ///
     /// # Errors
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
-    pub fn state(&self, push: f64, stable: bool) -> Result<StateAtPush, NoState> {
+    pub fn state(&self, signed_push: f64, stable: bool) -> Result<StateAtPush, NoState> {
         if stable {
-            return self.0.state(push);
+            return self.0.state(signed_push);
         }
         let unstable = self.path.unstable().ok_or_else(|| NoState::NoFold {
             at_deg: self.stable_end_deg(),
@@ -107,7 +107,7 @@ impl Branch {
         let not_there = |ends: [f64; 2]| NoState::NotUnstable {
             ends_deg: ends.map(f64::to_degrees),
         };
-        let node = self.node_at(unstable, push, not_there)?;
+        let node = self.node_at(unstable, signed_push, not_there)?;
         Ok(self.beyond_fold(&node))
     }
 

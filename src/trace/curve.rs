@@ -264,11 +264,7 @@ impl RowEnd {
             let ends = ends.iter().flatten();
             ends.map(move |end| (&sheet.rod, end))
         });
-        let conditions = pairs.map(|(rod, end)| InitialCondition {
-            rod,
-            tau: end.tau,
-            load: end.load,
-        });
+        let conditions = pairs.map(|(rod, end)| InitialCondition::new(rod, (end.tau, end.load)));
         let conditions: Vec<InitialCondition> = conditions.collect();
         let mut states = Batch::new(method).shoot(&conditions).into_iter();
         let peaks: Vec<PeakStrain> = match detail {

@@ -101,11 +101,7 @@ impl StableBranch {
         let conditions = rods
             .iter()
             .zip(states)
-            .map(|(rod, state)| InitialCondition {
-                rod,
-                tau: state.tau,
-                load: state.load,
-            });
+            .map(|(rod, state)| InitialCondition::new(rod, (state.tau, state.load)));
         Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 

@@ -172,9 +172,6 @@ impl StableBranch {
         if ratio == rod.friction {
             return Cow::Borrowed(rod);
         }
-        Cow::Owned(Rod {
-            friction: ratio,
-            ..rod.clone()
-        })
+        Cow::Owned(rod.with_friction(ratio))
     }
 }

@@ -10,7 +10,7 @@ use crate::sheet::{Crossing, Edge, Path, Sheet, Stretch};
 use crate::trace::{EndDetail, RowEnd, snaps_deg};
 use glam::DVec2;
 use std::collections::BTreeMap;
-use whiskmap_mechanics::rod::{Rod, Side};
+use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
 use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
@@ -128,10 +128,7 @@ impl SideStates {
     /// Returns the curvature of the whisker in `state` at the arclength `at_mm`, in 1/mm.
     pub fn curvature_per_mm(&self, state: &CourseState, at_mm: f64) -> f64 {
         let length = self.length_mm;
-        let rod = Rod {
-            friction: state.ratio,
-            ..self.sheet.rod.clone()
-        };
+        let rod = self.sheet.rod.with_friction(state.ratio);
         let (tau, load) = state.point.into();
         let points = profile(&rod, tau, load, Resolution::FINE, &[at_mm / length]);
         points

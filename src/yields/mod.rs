@@ -95,11 +95,7 @@ impl StrainMark {
         let conditions = loaded
             .iter()
             .flatten()
-            .map(|(rod, point)| InitialCondition {
-                rod,
-                tau: point.x,
-                load: point.y,
-            });
+            .map(|(rod, point)| InitialCondition::new(rod, *point));
         let conditions: Vec<InitialCondition> = conditions.collect();
         let peaks: Vec<PeakStrain> = Batch::new(Method::fine().doubled()).shoot(&conditions);
         let mut peaks = peaks.into_iter();

@@ -49,10 +49,8 @@ impl States {
 
     pub fn conditions(&self) -> Vec<InitialCondition<'_>> {
         let states = self.states.iter();
-        let condition = |&(side, tau, load): &(usize, f64, f64)| InitialCondition {
-            rod: &self.rods[side],
-            tau,
-            load,
+        let condition = |&(side, tau, load): &(usize, f64, f64)| {
+            InitialCondition::new(&self.rods[side], (tau, load))
         };
         states.map(condition).collect()
     }

@@ -157,10 +157,8 @@ fn residuals_are_below_the_bound(engine: &mut dyn Engine) {
     let solved = places(&batch).into_iter().zip(0..);
     let solved = solved.filter(|(_, i)| cells.outcome[*i] == Outcome::Solved);
     let solved: Vec<_> = solved.collect();
-    let conditions = solved.iter().map(|((side, ..), i)| InitialCondition {
-        rod: &batch.sides[*side].sheet.rod,
-        tau: cells.points[*i].x,
-        load: cells.points[*i].y,
+    let conditions = solved.iter().map(|((side, ..), i)| {
+        InitialCondition::new(&batch.sides[*side].sheet.rod, cells.points[*i])
     });
     let conditions: Vec<InitialCondition> = conditions.collect();
     let maps = Batch::new(batch.method).shoot::<ShootingMap>(&conditions);

@@ -39,11 +39,10 @@ fn states_and_values_are_within_their_bounds() {
             let places = places(&batch);
             let found = (0..cells.len()).filter(|i| cells.outcome[*i] == Outcome::Solved);
             let found: Vec<usize> = found.collect();
-            let conditions = found.iter().map(|i| InitialCondition {
-                rod: &batch.sides[places[*i].0].sheet.rod,
-                tau: cells.points[*i].x,
-                load: cells.points[*i].y,
-            });
+            let rod = |i: &usize| &batch.sides[places[*i].0].sheet.rod;
+            let conditions = found
+                .iter()
+                .map(|i| InitialCondition::new(rod(i), cells.points[*i]));
             let conditions: Vec<InitialCondition> = conditions.collect();
             let maps = Batch::new(batch.method).shoot::<ShootingMap>(&conditions);
             for (i, map) in found.iter().zip(maps) {

@@ -156,6 +156,15 @@ impl Rod {
         1.0 + self.gradient * s
     }
 
+    /// Returns this rod with another `friction` coefficient.
+    #[must_use]
+    pub fn with_friction(&self, friction: f64) -> Self {
+        Self {
+            friction,
+            ..self.clone()
+        }
+    }
+
     /// Returns the whisker's unit tangent at the contact, in axes whose second one is along the force.
     ///
     /// Friction tilts the force from the normal by the angle whose tangent is the friction coefficient. In axes turned with the

@@ -36,6 +36,15 @@ pub struct InitialCondition<'a> {
     pub load: f64,
 }
 
+impl<'a> InitialCondition<'a> {
+    /// Creates the initial condition of a trajectory of `rod` from a point `(tau, load)`.
+    #[must_use]
+    pub fn new(rod: &'a Rod, point: impl Into<(f64, f64)>) -> Self {
+        let (tau, load) = point.into();
+        Self { rod, tau, load }
+    }
+}
+
 /// Integration method of trajectories: the resolution, and effects that every kernel has.
 #[derive(Clone, Copy, Debug)]
 pub struct Method {
@@ -178,8 +187,9 @@ impl Batch {
         rod: &Rod,
         points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
     ) -> Vec<O> {
-        let points = points.into_iter().map(Into::into);
-        let conditions = points.map(|(tau, load)| InitialCondition { rod, tau, load });
+        let conditions = points
+            .into_iter()
+            .map(|point| InitialCondition::new(rod, point));
         self.shoot(&conditions.collect::<Vec<_>>())
     }
 
