@@ -45,8 +45,6 @@ impl PushSpan {
 /// Boundary of one row: the push angles that lie on the stable sheet.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RowBoundary {
-    /// True if the whisker at rest reaches the pole. The first span then begins at first touch.
-    touches: bool,
     /// Spans, first the one from first touch, if any; `None` if the crossings contradict each other.
     spans: Option<Vec<PushSpan>>,
     /// True if `spans` holds all spans of the row.
@@ -69,7 +67,6 @@ impl RowBoundary {
             end: *end,
         });
         Self {
-            touches,
             spans: (sound && even).then(|| spans.collect()),
             is_complete,
         }
@@ -106,20 +103,16 @@ impl RowBoundary {
     /// pole.
     #[must_use]
     pub fn detachment(&self) -> Option<&PushSpan> {
-        self.spans.as_ref().filter(|_| self.touches)?.first()
+        self.spans().first().filter(|span| span.begin.is_none())
     }
 
     /// Returns the other span that contains the end of a push from first touch, and ends beyond it: the whisker may snap to its states
     /// instead of leaving the pole. `None` if the boundary is unknown.
     #[must_use]
     pub fn snap(&self) -> Option<&PushSpan> {
-        let [detachment, others @ ..] = self.spans() else {
-            return None;
-        };
-        let continues = |span: &&PushSpan| {
-            self.touches && span.contains(detachment.to()) && span.to() > detachment.to() + TIE
-        };
-        others.iter().find(continues)
+        let end = self.detachment()?.to();
+        let continues = |span: &&PushSpan| span.contains(end) && span.to() > end + TIE;
+        self.spans().iter().find(continues)
     }
 
     /// Returns regime and status of the cell at `push`, a magnitude in radians, with this `outcome`. The cell is unresolved if outcome and
@@ -146,7 +139,7 @@ impl RowBoundary {
         match (status, span) {
             // Without a push the shape at rest decides: the whisker does not reach the pole.
             (Status::Solved | Status::NotConverged, Some(span))
-                if !self.touches && push <= TIE && Self::is_on_edge(span, push) =>
+                if span.begin.is_some() && push <= TIE && Self::is_on_edge(span, push) =>
             {
                 (Regime::OutOfReach, Status::Outside)
             }

@@ -33,7 +33,7 @@ const ROUNDING: f64 = 1e-15;
 fn value_weights(side: &WhiskerSide, end: &Crossing) -> Values {
     let push = end.push.min(1.0);
     let mut sizes = side.sizes(end);
-    let [.., chord, _, energy] = &mut sizes;
+    let [_, _, _, _, _, _, chord, _, energy] = &mut sizes;
     for size in [chord, energy] {
         *size *= push;
     }
@@ -119,9 +119,10 @@ impl RowExpansion {
         (residual <= most).then(expansion)?
     }
 
-    /// Drops the last coefficients of the expansions of `row` that are only rounding. The row ends at the argument `end`. Returns `None` if a coefficient is not
-    /// finite, if the push angle does not grow up to the end, or if the expansions contradict the end, which is computed apart: they must
-    /// have its push angle there, and be flat at a fold, or have their contact at the tip.
+    /// Drops the last coefficients of the expansions of `row` that are only rounding. The row ends at the argument `end`.
+    ///
+    /// Returns `None` if a coefficient is not finite, if the push angle does not grow up to the end, or if the expansions contradict the end, which
+    /// is computed apart: they must have its push angle there, and be flat at a fold, or have their contact at the tip.
     fn new(
         mut functions: Chebyshev<FUNCTIONS>,
         end: f64,

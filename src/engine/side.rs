@@ -50,8 +50,8 @@ impl WhiskerSide {
         }
     }
 
-    /// Returns this whisker side with a net whose states have a residual of at most `most` whisker lengths. It serves the rows for which it takes less
-    /// time than a trajectory for each cell.
+    /// Returns this whisker side with a net whose states have a residual of at most `most` whisker lengths. The net has the rows for which it takes
+    /// less time than a trajectory for each cell.
     #[must_use]
     pub fn with_net(mut self, most: f64) -> Self {
         let net = self.net(most);

@@ -191,8 +191,8 @@ impl ContactHistory {
         (HistoryKnot { push, slid, end }, limit)
     }
 
-    /// Returns the end of the tip limit if `push` is beyond it by no more than this end may differ from that of the row's boundary, which is
-    /// computed apart; otherwise `push`. All are magnitudes in radians.
+    /// Returns the end of the tip limit if `push` exceeds it by at most [`SAME_END`], otherwise `push`. The end of the row's boundary is computed
+    /// apart, and differs by as much. All are magnitudes in radians.
     pub(super) fn up_to_end(&self, push: f64) -> f64 {
         let end = self.tip.end();
         let is_at_end = push > end && push - end <= SAME_END * (1.0 + end);

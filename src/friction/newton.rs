@@ -49,8 +49,8 @@ const FRICTION_STEPS: u32 = 40;
 pub struct FrictionTarget<'a> {
     /// Level curve of the state's row, at a limit of sliding.
     pub level: &'a LevelCurve,
-    /// Signed push angle, in radians.
-    pub push: f64,
+    /// Push angle with its sign, in radians.
+    pub signed_push: f64,
     /// Slid distance of a contact that sticks, in whisker lengths; `None` if it slides.
     pub slid: Option<f64>,
     /// Start of Newton's method.
@@ -64,7 +64,7 @@ impl<'a> FrictionTarget<'a> {
     pub fn sliding(limit: &'a SlidingLimit, push: f64) -> Option<Self> {
         Some(Self {
             level: &limit.level,
-            push: limit.level.side.sign() * push,
+            signed_push: limit.level.side.sign() * push,
             slid: None,
             start: limit.near(push)?,
             is_stable: limit.is_stable,
@@ -74,7 +74,7 @@ impl<'a> FrictionTarget<'a> {
     /// Returns this target at another push, a magnitude in radians, with another start.
     pub fn at(&self, push: f64, start: FrictionPoint) -> Self {
         Self {
-            push: self.level.side.sign() * push,
+            signed_push: self.level.side.sign() * push,
             start,
             ..*self
         }
@@ -196,11 +196,11 @@ impl FrictionTarget<'_> {
         let (at, rod) = (&iterate.at, &level.rod);
         let map = &here.full.map;
         let node = |level: &LevelCurve, here: &FirstVariation| {
-            level.node(at.point, &here.full, self.push, at.angle)
+            level.node(at.point, &here.full, self.signed_push, at.angle)
         };
         let angles = node(level, here);
         let iterate_slid = slid(rod, &angles);
-        let place = level.row.pole(self.push);
+        let place = level.row.pole(self.signed_push);
         let missed = self.slid.map_or(0.0, |slid| slid - iterate_slid);
         let residual = map.pole.distance(place);
         let jacobian = beside.map(|(other, there)| {
@@ -261,7 +261,12 @@ impl FrictionTarget<'_> {
         jacobian: Option<DMat3>,
         residual: f64,
     ) -> FrictionStep {
-        let node = level.node(iterate.at.point, &here.full, self.push, iterate.at.angle);
+        let node = level.node(
+            iterate.at.point,
+            &here.full,
+            self.signed_push,
+            iterate.at.angle,
+        );
         let is_sound = match jacobian {
             Some(jacobian) => -level.side.sign() * jacobian.determinant() > 0.0,
             None => (here.full.map.det() > 0.0) == self.is_stable,

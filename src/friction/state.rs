@@ -57,13 +57,13 @@ pub struct FrictionState {
 }
 
 impl FrictionState {
-    /// Returns the state as a node of a level curve at the signed `push`, in radians.
+    /// Returns the state as a node of a level curve at `signed_push`, in radians.
     #[must_use]
-    pub fn node(&self, push: f64) -> CurveNode {
+    pub fn node(&self, signed_push: f64) -> CurveNode {
         CurveNode {
             point: self.at.point,
             full: self.variation.full,
-            signed_push: push,
+            signed_push,
             angle: self.at.angle,
         }
     }

@@ -79,7 +79,7 @@ impl<'a> StuckPath<'a> {
             let (end, level) = (end.as_ref()?, &run.history.limit(run.end.limit)?.level);
             Some(FrictionTarget {
                 level,
-                push: level.side.sign() * run.end.push,
+                signed_push: level.side.sign() * run.end.push,
                 slid: Some(end.slid),
                 start: end.at,
                 is_stable: true,
@@ -149,8 +149,8 @@ impl<'a> StuckPath<'a> {
         // On each side of the end of sliding the nodes are evenly spaced.
         let end = self
             .nodes
-            .partition_point(|(at, _)| *at < self.end.push.abs());
-        let side = match push < self.end.push.abs() {
+            .partition_point(|(at, _)| *at < self.end.signed_push.abs());
+        let side = match push < self.end.signed_push.abs() {
             true => &self.nodes[..=end],
             false => &self.nodes[end..],
         };

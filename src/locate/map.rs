@@ -115,12 +115,11 @@ impl Locator {
             })
             .collect();
         let sheet_grid = &self.sides[usize::from(side == Side::Cb)];
-        let points = states.iter().map(|(_, state)| (state.tau, state.load));
+        let points = states.iter().map(|(_, state)| state.point);
         let variations: Vec<FirstVariation> =
             Batch::new(self.method).shoot_at(&sheet_grid.rod, points);
         let cell = |((column, state), here): (&(usize, StateAtPush), FirstVariation)| {
-            let at = DVec2::new(state.tau, state.load);
-            let columns = base_derivatives(&sheet_grid.rod, at, &here);
+            let columns = base_derivatives(&sheet_grid.rod, state.point, &here);
             let condition = |pair: usize| {
                 let [one, other] = PAIRS[pair];
                 let measured = DVec3::from(

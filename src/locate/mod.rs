@@ -237,8 +237,8 @@ impl Locator {
         let (grid, full, at, units) = (found.grid, &found.full, found.at, &self.units);
         let distance = grid.rest.distance_of_pole(full.map.pole.length());
         let touch = grid.rest.pole_at_distance(distance).to_angle();
-        let push = found.phi - touch;
-        let reading = grid.reader.read(at.x, full, touch, push);
+        let signed_push = found.phi - touch;
+        let reading = grid.reader.read(at.x, full, touch, signed_push);
         let to_base = DVec2::new(full.tangent.x, -full.tangent.y);
         let contact = units.length_mm * to_base.rotate(-full.position);
         let pole = units.length_mm * full.map.pole;
@@ -267,7 +267,7 @@ impl Locator {
             pole_x_mm: Some(pole.x),
             pole_y_mm: Some(pole.y),
             distance_mm: Some(distance * units.length_mm),
-            push_angle_deg: Some(push.to_degrees()),
+            push_angle_deg: Some(signed_push.to_degrees()),
             misfit: Some(found.misfit),
             condition: Some(found.condition),
             arc_length_sd_mm: deviation(DVec2::new(arclength, 0.0), units.length_mm),

@@ -136,9 +136,9 @@ fn holds(
 
 /// Sizes of the values of a row ([`WhiskerSide::sizes`]): the larger of the sizes at its end and the sizes of `ours`.
 fn sizes(side: &WhiskerSide, at_end: Values, ours: Values) -> Values {
-    let of_state = |[arc, _, force, ..]: Values| [force.abs(), (force * arc).abs()];
-    let (at_end_alone, ours_alone) = (of_state(at_end), of_state(ours));
-    let [force, moment] = [0, 1].map(|i| f64::max(at_end_alone[i], ours_alone[i]));
+    let loads = |[arc, _, force, ..]: Values| [force.abs(), (force * arc).abs()];
+    let (end_loads, our_loads) = (loads(at_end), loads(ours));
+    let [force, moment] = [0, 1].map(|i| f64::max(end_loads[i], our_loads[i]));
     std::array::from_fn(|i| match Reading::DIMENSIONS[i] {
         Dimension::Length => f64::max(at_end[i].abs(), ours[i].abs()),
         Dimension::Angle => side.unit_values[i],

@@ -30,7 +30,7 @@ pub fn solve(
     let followed = continuations(&starts.collect::<Vec<_>>(), Stretch::Stable, NODE_MISS);
     let pieces = boundary.spans().iter().zip(followed).map(|(span, piece)| {
         let piece = piece.filter(|path| path.crossing().is_some_and(|end| end.is_same(&span.end)));
-        Some(piece?.nodes)
+        piece.map(|path| path.nodes)
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for &column in columns {

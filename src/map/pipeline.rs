@@ -223,7 +223,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         Some(self.summary.stages.time(Stage::Sheets, nets))
     }
 
-    /// Returns what the sheets of the next group serve, and the residual of their values in whisker lengths, if no device integrates them.
+    /// Returns the use of the sheets of the next group, if no device integrates them. The second value is the residual of their nets, in whisker lengths;
+    /// `None` without nets.
     fn side_net(&self) -> (SheetUse, Option<f64>) {
         let most = self.worker.row_residual;
         match most.filter(|_| self.worker.is_working()) {

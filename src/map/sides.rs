@@ -9,8 +9,8 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use whiskmap_mechanics::shooting::batch::Method;
 
-/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. Rows serve the first part of `net`;
-/// with its other part, a side also has values whose rows have a residual of at most this many whisker lengths.
+/// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. Sheets are for the use `serves`. With
+/// `most`, a side also has a net of values, whose rows have a residual of at most `most` whisker lengths.
 pub fn whisker_sides(
     scene: &Scene,
     (plan, method): (&Plan, Method),

@@ -43,8 +43,8 @@ fn straight_cylinder() -> Vec<Check> {
     let at_60 = "straight cylinder, pushed by 39.75122968 deg";
     let turned = pushed(&STRAIGHT_CYLINDER, 8.0, 39.751_229_68_f64.to_radians()).ok();
     let angle = turned.map(|(_, reading)| reading.contact_angle_deg);
-    let arc_60 = turned.map(|(state, _)| state.tau / 0.4);
-    let load_60 = turned.map(|(state, _)| state.load * 0.16);
+    let arc_60 = turned.map(|(state, _)| state.point.x / 0.4);
+    let load_60 = turned.map(|(state, _)| state.point.y * 0.16);
     let push = end.push_angle_deg;
     // 39.75122968 is known to 5e-9, and the turning angle grows 1.6 times as fast.
     #[rustfmt::skip]

@@ -89,7 +89,7 @@ impl<'a> Differentiated<'a> {
             Some(Sliding::Base | Sliding::Sticks) if state.stable => {
                 self.none(NoDerivative::Course)
             }
-            _ => self.at(Equations::Push, [state.tau, state.load], distance_mm),
+            _ => self.at(Equations::Push, state.point.to_array(), distance_mm),
         }
     }
 

@@ -8,7 +8,7 @@ use whiskmap_mechanics::rod::{RadiusProfile, RodDerivative, Side};
 /// Change of a whisker in front of its pole per unit of a variable.
 #[derive(Clone, Debug, Default)]
 pub struct WhiskerDerivative {
-    /// Derivatives of the dimensionless numbers of the rod by the variable. Those of a profile's pieces are in `pieces`.
+    /// Derivatives of the dimensionless numbers of the rod by the variable; in `pieces` those of the measured profile.
     pub rod: RodDerivative,
     /// Derivative of the distance at first touch, in mm per unit of the variable.
     pub distance_mm: f64,

@@ -233,8 +233,8 @@ impl Sheet {
         known
     }
 
-    /// Returns a Newton start `(tau, load)` for each cell of `row`, `[push_angle]`, one for each of the growing `pushes` (magnitudes, in radians). An entry is
-    /// `None` outside the sheet.
+    /// Returns a Newton start `(tau, load)` for each cell of `row`, `[push_angle]`, one for each of the growing `pushes`. Push angles are magnitudes in
+    /// radians. An entry is `None` outside the sheet.
     #[must_use]
     pub fn guesses(&self, row: usize, pushes: &[f64]) -> Vec<Option<DVec2>> {
         let mut guesses = vec![None; pushes.len()];

@@ -143,7 +143,7 @@ impl Crossing {
         }
     }
 
-    /// Returns true if both are the same crossing, as two computations find it: they differ by the error of the resolution.
+    /// Returns true if both are the same crossing from two computations, which differ by the error of the resolution.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
         let apart = [self.tau / other.tau, self.load / other.load].map(|ratio| (ratio - 1.0).abs());
@@ -177,8 +177,8 @@ impl Crossing {
     }
 }
 
-/// Returns the ends of the stable pieces of a row with these `crossings`, `[piece]`: a row that `touches` the pole begins with the end of the piece
-/// from first touch, which has no crossing at its beginning. A last crossing without its partner is left out.
+/// Returns the ends of the stable pieces of a row with these `crossings`, `[piece]`. If the row `touches` the pole, its first piece begins at first
+/// touch, without a crossing. A last crossing without its partner is left out.
 pub fn pieces(
     touches: bool,
     crossings: &[Crossing],

@@ -47,8 +47,8 @@ impl RowSpan {
         (is_monotone && nodes.len() > 1).then_some(Self { sign, nodes })
     }
 
-    /// Writes guesses `(tau, load)` for those of the growing `pushes` (magnitudes, in radians) that are inside the span, where there are none, into
-    /// `guesses`: `[push_angle]`.
+    /// Writes missing `guesses` `(tau, load)`, `[push_angle]`, for those of the growing `pushes` that are inside the span. Push angles are magnitudes in
+    /// radians.
     pub fn write_guesses(&self, pushes: &[f64], guesses: &mut [Option<DVec2>]) {
         let [first, last] = [self.nodes[0].push, self.nodes[self.nodes.len() - 1].push];
         let largest = self.nodes.iter().map(|node| node.w).fold(0.0, f64::max);

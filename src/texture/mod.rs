@@ -198,7 +198,8 @@ pub fn texture_until(
     })
 }
 
-/// Contact with an asperity, and the asperity's number as an obstacle: asperities at equal distances share a row of states.
+/// Contact with an asperity, and the number of the asperity as an obstacle; `None` without contact. The row does not identify the asperity, because
+/// asperities at equal distances share a row.
 type Contact = Option<(PushedContact, i32)>;
 
 /// Asperities of a surface with the frame of the tip.
@@ -233,7 +234,9 @@ impl Placed<'_> {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            let pushed = chunk.iter().map(|contact| Some(contact.as_ref()?.0));
+            let pushed = chunk
+                .iter()
+                .map(|contact| contact.map(|(pushed, _)| pushed));
             found.extend(states.at(&pushed.collect::<Vec<_>>(), friction::states));
         }
         let held = contacts.par_iter().zip(found).zip(moments);

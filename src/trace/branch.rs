@@ -18,7 +18,7 @@ const POINTS_AT_ONCE: usize = 1 << 10;
 /// Branch: all states of one whisker at one pole that are connected with first touch. Unstable states beyond nine turns of the base are left
 /// out, and the last point then has no mark.
 ///
-/// A branch has the methods of its stable part, which also read and draw unstable states.
+/// A branch has the methods of its stable part, which also read and draw unstable states. Its method [`Branch::state`] selects the part.
 #[derive(Clone, Debug)]
 pub struct Branch(StableBranch);
 
@@ -74,12 +74,13 @@ impl Branch {
         StableBranch::followed((whisker, pole, side), distance_mm, Stretch::PastFold).map(Self)
     }
 
-    /// Computes the stable or the unstable state of `whisker` at `pole` at `signed_push`, in radians, with the part of the branch up to it.
+    /// Computes the stable or the unstable state at `signed_push`, in radians, of `pushed`: a whisker, its pole and the side. Also returns the states
+    /// that were followed: up to the fold for a stable state, and past it for an unstable one.
     ///
     /// # Errors
     /// Fails as [`StableBranch::new`] or [`Branch::new`] does, or if no such state exists.
     pub fn at_push(
-        whisker_side: (&Whisker, &Pole, Side),
+        pushed: (&Whisker, &Pole, Side),
         distance_mm: f64,
         signed_push: f64,
         stable: bool,
@@ -88,7 +89,7 @@ impl Branch {
             true => Stretch::Stable,
             false => Stretch::PastFold,
         };
-        let branch = Self(StableBranch::followed(whisker_side, distance_mm, stretch)?);
+        let branch = Self(StableBranch::followed(pushed, distance_mm, stretch)?);
         let state = branch.state(signed_push, stable)?;
         Ok((branch.0, state))
     }

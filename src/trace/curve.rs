@@ -218,7 +218,7 @@ pub(crate) fn detachments<T: Send>(
                 Ok(row_end) => row_end,
                 Err(kind) => return keep(index, Detachment { kind, ..none }, None),
             };
-            let (peak, snaps) = (row_end.peak, detail >= EndDetail::Snaps);
+            let (peak, has_snaps) = (row_end.peak, detail >= EndDetail::Snaps);
             // The residual of the crossing estimates the error after its last Newton step; `off` is the miss of this trajectory.
             let off = libm::log(place.pole_distance / row_end.state.full.map.pole.length()).abs();
             let by_state = || Sliding::of(&row_end.state, &sheet.rod, row_end.crossing.tau);
@@ -229,13 +229,12 @@ pub(crate) fn detachments<T: Send>(
                 peak_strain_mm: peak.map(|peak| peak.arclength * whisker.length_mm),
                 residual: Some(row_end.crossing.residual + off),
                 sliding: slidings[row].or_else(by_state),
-                snaps_deg: snaps.then(|| snaps_deg(sheet, row)).flatten(),
+                snaps_deg: has_snaps.then(|| snaps_deg(sheet, row)).flatten(),
                 ..none.with_state(Some(&row_end.reading(&reader, sheet, row)))
             };
             keep(index, end, Some(row_end.crossing))
         };
-        let ends = row_ends.iter().copied().enumerate();
-        ends.map(detachment).collect()
+        row_ends.into_iter().enumerate().map(detachment).collect()
     };
     let ends = sheets.par_iter().zip(row_ends).enumerate();
     ends.map(of_sheet).collect()
@@ -253,7 +252,8 @@ pub(crate) struct RowEnd {
 }
 
 impl RowEnd {
-    /// Computes the ends of pushes in the rows of `sheets` in one batch by the integration `method`, `[sheet][row]`, or the reasons why there are none.
+    /// Computes the ends of pushes in the rows of `sheets`, `[sheet][row]`, or the reasons why there are none. All ends share a batch by `method`, and
+    /// their strains another one with twice the steps.
     pub fn of(
         method: Method,
         sheets: &[Sheet],
@@ -294,8 +294,8 @@ impl RowEnd {
     /// Returns the state in physical units, as the end of this `row` of `sheet`.
     pub fn reading(&self, reader: &Reader, sheet: &Sheet, row: usize) -> Reading {
         let Crossing { tau, push, .. } = self.crossing;
-        let (touch, push) = (sheet.rows[row].touch, sheet.side.sign() * push);
-        reader.read(tau, &self.state.full, touch, push)
+        let (touch, signed_push) = (sheet.rows[row].touch, sheet.side.sign() * push);
+        reader.read(tau, &self.state.full, touch, signed_push)
     }
 }
 
@@ -306,8 +306,8 @@ pub(crate) fn crossings(sheet: &Sheet) -> Vec<Result<Crossing, DetachmentKind>> 
             return Err(DetachmentKind::OutOfReach);
         }
         let boundary = RowBoundary::new(true, &sheet.crossings[row]);
-        let detachment = boundary.detachment().ok_or(DetachmentKind::Unresolved);
-        detachment.map(|span| span.end)
+        let end = boundary.detachment().map(|span| span.end);
+        end.ok_or(DetachmentKind::Unresolved)
     };
     (0..sheet.rows.len()).map(of_row).collect()
 }

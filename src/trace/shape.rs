@@ -64,11 +64,11 @@ impl StableBranch {
     #[must_use]
     pub fn shape(&self, found: &StateAtPush, count: usize) -> WhiskerShape {
         let (rod, row, units) = (&*self.rod(found.ratio), self.row(), &self.units);
-        let contact = arclength(rod, found.tau).min(1.0);
+        let contact = arclength(rod, found.point.x).min(1.0);
         let mut at: Vec<f64> = uniform(count).filter(|s| *s != contact).collect();
         let index = at.partition_point(|s| *s < contact);
         at.insert(index, contact);
-        let places = profile(rod, found.tau, found.load, FINER, &at);
+        let places = profile(rod, found.point.x, found.point.y, FINER, &at);
         // Rotation from the axes of the contact to the axes of first touch, where the base's tangent is at `-push`.
         let base = &found.full;
         let to_base = DVec2::new(base.tangent.x, -base.tangent.y);

@@ -1,4 +1,4 @@
-//! Stable part of a branch, where nothing is needed of the unstable states.
+//! Stable part of a branch, with all that its unstable part shares: path, units, and history of the contact.
 
 use super::columns::StateRow;
 use super::{BranchPoint, FINER, NoState, StateAtPush};
@@ -10,7 +10,7 @@ use whiskmap_mechanics::shooting::PeakStrain;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
 /// Stable part of a [`Branch`](super::Branch): the states from first touch to the fold or the tip. The continuation ends there, which saves
-/// most of the time.
+/// most of the time. Within a [`Branch`](super::Branch), the path goes on past the fold.
 #[derive(Clone, Debug)]
 pub struct StableBranch {
     pub(super) path: Path,
@@ -101,7 +101,7 @@ impl StableBranch {
         let conditions = rods
             .iter()
             .zip(states)
-            .map(|(rod, state)| InitialCondition::new(rod, (state.tau, state.load)));
+            .map(|(rod, state)| InitialCondition::new(rod, state.point));
         Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 
@@ -120,7 +120,7 @@ impl StableBranch {
             // From (ln D, phi) by (tau, load) to (D, phi) by (s, f): dtau/ds = 1/rho, dload/df = 1/rho^2, and f is the
             // normal component of the force.
             det: state.full.map.det() * row.pole_distance
-                / (rod.radius(state.tau).powi(3) * rod.contact_tangent().x),
+                / (rod.radius(state.point.x).powi(3) * rod.contact_tangent().x),
             sliding: state.sliding,
             ..BranchPoint::default().with_state(Some(&self.read(state)))
         }

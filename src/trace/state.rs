@@ -3,6 +3,7 @@
 use super::{BranchPoint, NoState, StableBranch};
 use crate::friction::{ContactPhase, ContactQuery, FrictionState, Sliding, states};
 use crate::sheet::{CurveNode, LevelCurve, Path};
+use glam::DVec2;
 use std::borrow::Cow;
 use whiskmap_mechanics::rod::Rod;
 use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
@@ -10,10 +11,8 @@ use whiskmap_mechanics::shooting::{FullState, Reader, Reading};
 /// State of a branch at a push angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StateAtPush {
-    /// Contact coordinate `tau` of the state, dimensionless.
-    pub tau: f64,
-    /// Signed load `f/rho^2` of the state, dimensionless.
-    pub load: f64,
+    /// Contact coordinate and signed load of the state, `(tau, load)`, dimensionless.
+    pub point: DVec2,
     /// Push angle of the state as requested, signed, in radians.
     pub signed_push: f64,
     /// Angle of the tangent at the contact, from the base's tangent, in radians.
@@ -32,8 +31,7 @@ impl StateAtPush {
     /// Creates the state of a node on the stable or the unstable part of a branch, with this force ratio and sliding direction.
     pub(super) fn of(node: &CurveNode, stable: bool, ratio: f64, sliding: Option<Sliding>) -> Self {
         Self {
-            tau: node.point.x,
-            load: node.point.y,
+            point: node.point,
             signed_push: node.signed_push,
             angle: node.angle,
             stable,
@@ -50,7 +48,7 @@ impl StableBranch {
     pub fn read(&self, state: &StateAtPush) -> Reading {
         let reader = Reader::new(self.units, &self.rod(state.ratio));
         reader.read(
-            state.tau,
+            state.point.x,
             &state.full,
             self.path.level.row.touch,
             state.signed_push,
@@ -69,22 +67,22 @@ impl StableBranch {
     /// No such state exists. The error names how the whisker leaves the pole, and at which push angle.
     pub fn state(&self, signed_push: f64) -> Result<StateAtPush, NoState> {
         let Path { level, fold, .. } = &self.path;
-        let left = |[touch, end]: [f64; 2]| {
+        let outside = |[touch, end]: [f64; 2]| {
             let at_deg = end.to_degrees();
-            match fold {
-                _ if level.side.sign() * signed_push < 0.0 => NoState::LostTouch {
+            match (level.side.sign() * signed_push < 0.0, fold) {
+                (true, _) => NoState::LostTouch {
                     stays_deg: [touch.min(end), touch.max(end)].map(f64::to_degrees),
                 },
-                Some(_) => NoState::SlippedOff { at_deg },
-                None => NoState::PulledOff { at_deg },
+                (false, Some(_)) => NoState::SlippedOff { at_deg },
+                (false, None) => NoState::PulledOff { at_deg },
             }
         };
-        let node = self.node_at(self.path.stable(), signed_push, left)?;
+        let node = self.node_at(self.path.stable(), signed_push, outside)?;
         Ok(self.pushed(&[node])?[0])
     }
 
-    /// Returns the node at `signed_push`, in radians, in a `part` of the path. Outside it, the error is what `outside` makes of its first
-    /// and last push angle.
+    /// Returns the node at `signed_push`, in radians, in a `part` of the path. For other push angles, `outside` returns the error from the first and
+    /// the last push angle of the part.
     pub(super) fn node_at(
         &self,
         part: &[CurveNode],

@@ -77,9 +77,9 @@ impl<'a> ContactTracker<'a> {
         let lost = course.lost_at.filter(|_| !self.is_lost);
         self.is_lost |= lost.is_some();
         let changes = snaps.chain(lost.map(|push| (push, None)));
-        let side = *side;
-        let changed = changes.map(|(push, phase)| pushed(side, push, phase));
-        changed.collect()
+        changes
+            .map(|(push, phase)| pushed(*side, push, phase))
+            .collect()
     }
 
     /// Ends the contact after its last move. At a release no unstable states may be left ahead; a detachment needs a contact that slides
@@ -102,7 +102,7 @@ impl<'a> ContactTracker<'a> {
     }
 }
 
-/// Returns the contact with the single pole of a course.
+/// Returns the contact with the single pole of a course after a `push`, a magnitude in radians.
 pub const fn pushed(side: Side, push: f64, phase: Option<ContactPhase>) -> PushedContact {
     PushedContact {
         side,

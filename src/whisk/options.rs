@@ -60,7 +60,10 @@ pub struct CurvaturePoint {
 }
 
 impl CurvaturePoint {
-    /// Creates the point of `whisker` at the arclength `at_mm`, if it is given. The error is a point that is not on the whisker.
+    /// Creates the point of `whisker` at the arclength `at_mm`; `None` without an arclength.
+    ///
+    /// # Errors
+    /// The arclength is not on the whisker.
     pub fn of(whisker: &Whisker, at_mm: Option<f64>) -> Result<Option<Self>, CurvatureAtError> {
         let Some(at_mm) = at_mm else { return Ok(None) };
         let length_mm = whisker.length_mm;

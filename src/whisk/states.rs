@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 use whiskmap_mechanics::shooting::shape::profile;
-use whiskmap_mechanics::shooting::{Reader, Reading, Resolution};
+use whiskmap_mechanics::shooting::{FullState, Reader, Reading, Resolution};
 
 /// Contact of the whisker at one time: side, pole, push and, with friction, the phase of the contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -148,21 +148,24 @@ impl SideStates {
                 && contact.push < self.end(contact.row).push
         };
         let inside = contacts.iter().filter(|contact| is_inside(contact));
-        let queries = inside.filter_map(|contact| {
-            let limits = self.limits(contact.row)?;
-            Some(limits.query(contact.phase?, contact.push))
-        });
+        let query = |contact: &PushedContact| {
+            Some(self.limits[contact.row].query(contact.phase?, contact.push))
+        };
+        let queries = inside.filter_map(query);
         let mut solved = solve(&queries.collect::<Vec<_>>()).into_iter();
         let states = contacts.iter().map(|contact| {
             if is_inside(contact) {
                 let state = contact.phase.and_then(|_| solved.next()?)?;
                 let reader = self.reader.with_contact(&state.rod(&self.sheet.rod));
-                let (touch, push) = (
-                    self.sheet.rows[contact.row].touch,
-                    self.sheet.side.sign() * contact.push,
-                );
+                let touch = self.sheet.rows[contact.row].touch;
+                let signed_push = self.sheet.side.sign() * contact.push;
                 return Some(CourseState {
-                    reading: reader.read(state.at.point.x, &state.variation.full, touch, push),
+                    reading: reader.read(
+                        state.at.point.x,
+                        &state.variation.full,
+                        touch,
+                        signed_push,
+                    ),
                     sliding: Some(state.sliding),
                     point: state.at.point,
                     ratio: state.at.ratio,
@@ -220,12 +223,8 @@ impl SideStates {
         let found = refine(Method::new(Resolution::FINE), &[&self.sheet], &targets);
         for (i, cell) in places.into_iter().zip(found) {
             if cell.outcome.is_solved() {
-                let (state, touch) = (cell.state, self.sheet.rows[row(&i)].touch);
-                let signed_push = sign * push(&i);
-                let reading = self
-                    .reader
-                    .read(state.point.x, &state.full, touch, signed_push);
-                states[i] = Some(CourseState::smooth(reading, state.point));
+                let state = &cell.state;
+                states[i] = Some(self.smooth(row(&i), push(&i), state.point, &state.full));
             }
         }
         self.fill(contacts, &mut states);
@@ -245,7 +244,11 @@ impl SideStates {
                     let level = self.sheet.level(row);
                     level.continuation(level.touch(), Stretch::Stable)
                 });
-                let followed = path.as_ref().and_then(|path| self.along(path, push));
+                let signed_push = self.sheet.side.sign() * push;
+                let node = path
+                    .as_ref()
+                    .and_then(|path| path.level.state_at_push(path.stable(), signed_push));
+                let followed = node.map(|node| self.smooth(row, push, node.point, &node.full));
                 // The ends of the path and of the push are computed apart.
                 let is_end = push >= self.end(row).push - TIE;
                 *state = followed.or_else(|| is_end.then(|| self.at_end(row)));
@@ -253,15 +256,10 @@ impl SideStates {
         }
     }
 
-    /// Returns the state without friction at `push` along the stable states of a row; `None` beyond them.
-    fn along(&self, path: &Path, push: f64) -> Option<CourseState> {
-        let signed_push = self.sheet.side.sign() * push;
-        let node = path.level.state_at_push(path.stable(), signed_push)?;
-        let touch = path.level.row.touch;
-        let reading = self
-            .reader
-            .read(node.point.x, &node.full, touch, signed_push);
-        Some(CourseState::smooth(reading, node.point))
+    /// Returns the state without friction at `push` in `row`, a magnitude in radians, from its `(tau, load)` and its `full` state.
+    fn smooth(&self, row: usize, push: f64, point: DVec2, full: &FullState) -> CourseState {
+        let (touch, signed_push) = (self.sheet.rows[row].touch, self.sheet.side.sign() * push);
+        CourseState::smooth(self.reader.read(point.x, full, touch, signed_push), point)
     }
 }
 

@@ -16,8 +16,8 @@ fn the_straight_cylinder_is_the_elastica() {
         for degrees in [1.0, 12.0, 24.0, 36.0, 48.0, 60.0, 75.0, 90.0, 105.0, 115.0] {
             let exact = elastica(f64::to_radians(degrees));
             let state = branch.state(side.sign() * exact.push, true).unwrap();
-            let arc = state.tau / 0.4;
-            let load = state.load.abs() * 0.16;
+            let arc = state.point.x / 0.4;
+            let load = state.point.y.abs() * 0.16;
             assert!(
                 (arc - exact.arc_over_distance).abs() < 1e-10,
                 "{degrees}: {arc}"

@@ -82,7 +82,7 @@ impl CourseArgs {
     }
 }
 
-/// Returns the text of an energy in nJ, which is NaN if it is not known.
+/// Returns the text of an energy in nJ; NaN means an unknown energy.
 pub fn energy(nj: f64) -> String {
     match nj.is_nan() {
         true => "an unknown energy".to_owned(),

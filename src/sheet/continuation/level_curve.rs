@@ -33,7 +33,7 @@ pub struct CurveNode {
     pub point: DVec2,
     /// State of the node: pole with first derivatives, pose of the base, force and energy.
     pub full: FullState,
-    /// Push angle of the node since first touch with its sign, in radians, continuous along the curve.
+    /// Push angle of the node with its sign, since first touch, in radians; continuous along the curve.
     pub signed_push: f64,
     /// Tangent angle at the contact of the node, in radians from the base's tangent, continuous along the curve.
     pub angle: f64,

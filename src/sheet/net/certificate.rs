@@ -100,8 +100,8 @@ pub(super) fn certified(
         .zip(&exact)
         .map(|((checked_row, found), exact)| {
             let [push, tau, _, angle, x, y, chord, energy] = *found;
-            let push = sign * push;
-            let numbers = reader.numbers(tau, exact, checked_row.row.touch + push, chord);
+            let signed_push = sign * push;
+            let numbers = reader.numbers(tau, exact, checked_row.row.touch + signed_push, chord);
             let [exact_x, exact_y] = numbers.position;
             let errors = [
                 angle - numbers.contact_angle,
@@ -110,7 +110,7 @@ pub(super) fn certified(
                 chord - numbers.chord,
                 energy - numbers.energy,
             ];
-            let miss = exact.pole.distance(checked_row.row.pole(push));
+            let miss = exact.pole.distance(checked_row.row.pole(signed_push));
             larger(miss, largest(&errors, &checked_row.weights))
         });
     larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)

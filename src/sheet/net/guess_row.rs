@@ -180,7 +180,8 @@ impl GuessRow {
         })
     }
 
-    /// Writes missing `guesses`, `(tau, load)` `[push_angle]`, for the growing `pushes` (magnitudes, in radians) that are near the row of `rod` between its ends.
+    /// Writes missing `guesses` `(tau, load)`, `[push_angle]`, for the growing `pushes` near the row of `rod` between its ends. Push angles are magnitudes
+    /// in radians.
     pub fn write_guesses(&self, rod: &Rod, pushes: &[f64], guesses: &mut [Option<DVec2>]) {
         let from = pushes.partition_point(|push| *push < self.ends[0] - PUSH_MARGIN);
         let to = pushes.partition_point(|push| *push <= self.ends[1] + PUSH_MARGIN);

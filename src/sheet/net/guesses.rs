@@ -20,8 +20,8 @@ use whiskmap_mechanics::numerics::{LaneNumbers, WIDTH, nearest_turn};
 use whiskmap_mechanics::rod::{Rod, arclength};
 use whiskmap_mechanics::shooting::ShootingMap;
 
-/// Largest errors of `ln D` and `phi` of guesses, estimated from the last coefficients. The second one is for panels that are made because those with
-/// the first one do not show all folds. The error is mostly much smaller, so that the step of Newton's method from nearly every guess is short enough to be the last.
+/// Largest errors of `ln D` and `phi` of guesses, estimated from the last coefficients. Panels have the second one if panels with the first one do not
+/// show all folds. The error is mostly much smaller. The step of Newton's method from nearly every guess is then short enough to be the last.
 /// The steps of coarse trajectories change with the load, which leaves up to 6e-6. With measured radii, states are not analytic where the contact
 /// passes from one radius to the next, and few panels have the smaller error.
 pub const GUESS_ERRORS: [f64; 2] = [3e-7, 1e-5];

@@ -14,7 +14,7 @@ pub enum Dimension {
     Angle,
     /// Normal part of the force between pole and whisker, in uN.
     NormalForce,
-    /// Component of that force, in uN.
+    /// Component of the force between pole and whisker, in uN.
     Force,
     /// Moment in nN m, or energy in nJ.
     Moment,
