@@ -151,6 +151,41 @@ fn a_cycle_without_detachment_is_closed() {
     assert!(open[30] > 1.0 && open[31..].iter().all(|force| *force == 0.0));
 }
 
+/// A detachment loses its energy less that of a touch at once. What an undecided state holds at once is not known, nor is a touch without energy.
+#[test]
+fn the_lost_energy_is_unknown_if_one_of_its_energies_is() {
+    let detachment = WhiskEvent {
+        event: WhiskEventKind::SlipOff,
+        angle_deg: 10.0,
+        energy_nj: Some(5.0),
+        ..WhiskEvent::default()
+    };
+    let lost = |event: WhiskEventKind, angle_deg: f64, energy_nj: Option<f64>| {
+        let next = WhiskEvent {
+            event,
+            angle_deg,
+            energy_nj,
+            ..WhiskEvent::default()
+        };
+        let course = Whisk {
+            samples: Vec::new(),
+            events: vec![detachment, next],
+            gaps: Vec::new(),
+            cf_touch_deg: 0.0,
+            assumed_free_deg: None,
+        };
+        course.lost_nj()
+    };
+    let (touch, undecided) = (WhiskEventKind::Touch, WhiskEventKind::Undecided);
+    assert_eq!(lost(touch, 10.0, Some(2.0)), 3.0);
+    assert_eq!(
+        [lost(touch, 11.0, None), lost(undecided, 11.0, None)],
+        [5.0; 2]
+    );
+    let unknown = [lost(touch, 10.0, None), lost(undecided, 10.0, Some(5.0))];
+    assert!(unknown.iter().all(|lost| lost.is_nan()));
+}
+
 /// The work of the base from the touch to the detachment, integrated over the moments of samples, is the energy that is lost.
 #[test]
 fn the_work_of_the_base_is_the_lost_energy() {

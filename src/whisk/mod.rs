@@ -95,7 +95,8 @@ impl Whisk {
     }
 
     /// Returns the energy that the detachments of the course lose, in nJ. A detachment loses the energy of the last state before it, less
-    /// the energy of a state on the other side that follows at once. The result is NaN after a gap that is not bridged.
+    /// the energy of a state on the other side that follows at once. The result is NaN if one of these energies is not known, as of an undecided state,
+    /// and after a gap that is not bridged.
     #[must_use]
     pub fn lost_nj(&self) -> f64 {
         if self.gaps.iter().any(|gap| !gap.is_bridged) {
@@ -105,12 +106,15 @@ impl Whisk {
         let mut lost = 0.0;
         while let Some(event) = events.next() {
             if event.event.is_detachment() {
-                let simultaneous = events
-                    .peek()
-                    .filter(|next| next.angle_deg == event.angle_deg);
-                let touch = simultaneous.filter(|next| next.event == WhiskEventKind::Touch);
-                let held = touch.and_then(|touch| touch.energy_nj);
-                lost += event.energy_nj.unwrap_or(f64::NAN) - held.unwrap_or_default();
+                let next = events.peek();
+                let simultaneous = next.filter(|next| next.angle_deg == event.angle_deg);
+                let after = match simultaneous {
+                    None => Some(0.0),
+                    Some(next) => next
+                        .energy_nj
+                        .filter(|_| next.event == WhiskEventKind::Touch),
+                };
+                lost += event.energy_nj.unwrap_or(f64::NAN) - after.unwrap_or(f64::NAN);
             }
         }
         lost
