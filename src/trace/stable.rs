@@ -9,8 +9,8 @@ use whiskmap_mechanics::rod::{Rest, Side, Units};
 use whiskmap_mechanics::shooting::PeakStrain;
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 
-/// Stable part of a [`Branch`](super::Branch): the states from first touch to the fold or the tip. The continuation ends there, which saves
-/// most of the time. Within a [`Branch`](super::Branch), the path goes on past the fold.
+/// Stable part of a [`Branch`](super::Branch): the states from first touch to the fold or the tip. A continuation that ends there
+/// saves most of the time. The path of a [`Branch`](super::Branch) also has the unstable states beyond the fold.
 #[derive(Clone, Debug)]
 pub struct StableBranch {
     pub(super) path: Path,
