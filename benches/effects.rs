@@ -20,13 +20,9 @@ use random_rods::{Random, condition, rod};
 const RUNS: usize = 7;
 
 fn main() {
-    let count = std::env::args()
-        .nth(1)
-        .and_then(|text| text.parse().ok())
-        .unwrap_or(20_000);
+    let count = std::env::args().nth(1).and_then(|text| text.parse().ok()).unwrap_or(20_000);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
-    pool.build_global()
-        .expect("the global pool is not built yet");
+    pool.build_global().expect("the global pool is not built yet");
 
     let sets: Vec<(Effects, Vec<InitialCondition<'static>>)> = effect_sets::all()
         .map(|effects| {
@@ -81,14 +77,6 @@ fn name(effects: Effects) -> String {
         (effects.polynomial, "traced shape"),
         (effects.gradient, "modulus gradient"),
     ];
-    let on: Vec<&str> = names
-        .iter()
-        .filter(|(on, _)| *on)
-        .map(|(_, name)| *name)
-        .collect();
-    if on.is_empty() {
-        "none: a straight cylinder".to_owned()
-    } else {
-        on.join(", ")
-    }
+    let on: Vec<&str> = names.iter().filter(|(on, _)| *on).map(|(_, name)| *name).collect();
+    if on.is_empty() { "none: a straight cylinder".to_owned() } else { on.join(", ") }
 }

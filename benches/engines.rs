@@ -49,18 +49,14 @@ fn integrators() {
         });
     }
     let fine = Method::fine().with_effects(USUAL);
-    group.rate(
-        "nystrom8, first derivatives and energy",
-        TRAJECTORIES,
-        || Batch::new(fine).shoot::<FirstVariation>(black_box(&conditions)),
-    );
+    group.rate("nystrom8, first derivatives and energy", TRAJECTORIES, || {
+        Batch::new(fine).shoot::<FirstVariation>(black_box(&conditions))
+    });
     group.rate("nystrom8, second derivatives", TRAJECTORIES, || {
         Batch::new(fine).shoot::<SecondVariation>(black_box(&conditions))
     });
     group.rate("nystrom8, first derivatives, scalar", TRAJECTORIES, || {
-        Batch::new(fine)
-            .on(Unit::scalar())
-            .shoot::<ShootingMap>(black_box(&conditions))
+        Batch::new(fine).on(Unit::scalar()).shoot::<ShootingMap>(black_box(&conditions))
     });
 }
 
@@ -96,9 +92,7 @@ fn sheets() {
     let length = scene.whisker.length_mm;
     let distances: Vec<f64> = scene.grid.distance_mm.iter().map(|d| d / length).collect();
     let group = Group::new("sheets");
-    group.time("fold at the tip", || {
-        Sheet::fold_at_tip(method, black_box(&rod), Side::Cb)
-    });
+    group.time("fold at the tip", || Sheet::fold_at_tip(method, black_box(&rod), Side::Cb));
     for rows in [1, 32, 512] {
         let distances: Vec<f64> = distances.iter().copied().step_by(512 / rows).collect();
         group.time(format!("folds and crossings, {rows} rows"), || {
@@ -111,16 +105,10 @@ fn sheets() {
     for (row, place) in sheet.rows.iter().enumerate() {
         let guesses = sheet.guesses(row, &pushes);
         for (guess, push) in guesses.iter().zip(&pushes) {
-            shots.extend(guess.map(|guess| CellTarget {
-                rod: 0,
-                guess,
-                pole: place.pole(*push),
-            }));
+            shots.extend(guess.map(|guess| CellTarget { rod: 0, guess, pole: place.pole(*push) }));
         }
     }
-    group.rate("refinement", shots.len(), || {
-        refine(method, &[&sheet], black_box(&shots))
-    });
+    group.rate("refinement", shots.len(), || refine(method, &[&sheet], black_box(&shots)));
 }
 
 /// Writing of a map file.

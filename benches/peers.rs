@@ -40,9 +40,7 @@ fn main() {
     if let Some(path) = value("--ensemble") {
         std::fs::write(path, table(&conditions, &exact)).unwrap();
     }
-    let threads = std::thread::available_parallelism()
-        .map_or(1, usize::from)
-        .min(2);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from).min(2);
     let [one, two] = [1, threads].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         pool.build().unwrap()
@@ -67,10 +65,7 @@ fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = info.lines().find(|line| line.starts_with("model name"));
     let name = model.and_then(|line| line.split_once(':'));
-    name.map_or_else(
-        || std::env::consts::ARCH.to_owned(),
-        |(_, name)| name.trim().to_owned(),
-    )
+    name.map_or_else(|| std::env::consts::ARCH.to_owned(), |(_, name)| name.trim().to_owned())
 }
 
 /// Random trajectories: taper up to 0.95, contacts from 0.05 to 0.999 of the length, `q` up to 9. The first half of the rods is
@@ -139,9 +134,7 @@ fn error(condition: &InitialCondition, found: &ShootingMap, exact: &ShootingMap)
     let by_force = rho * rho / (s * s);
     let sizes = [1.0 / s, 1.0 / s, s, s, by_force, by_force];
     let (found, exact) = (observables(condition, found), observables(condition, exact));
-    (0..6).fold(0.0, |worst, i| {
-        f64::max(worst, sizes[i] * (found[i] - exact[i]).abs())
-    })
+    (0..6).fold(0.0, |worst, i| f64::max(worst, sizes[i] * (found[i] - exact[i]).abs()))
 }
 
 /// Seconds of the fastest of [`RUNS`] runs of `work` in `pool`: other processes can only make a run slower.
@@ -161,11 +154,7 @@ fn trajectories(
     exact: &[ShootingMap],
 ) -> Vec<Value> {
     let vectors = Unit::detect();
-    let kernels = [
-        ("simd", vectors, one),
-        ("simd", vectors, two),
-        ("scalar", Unit::scalar(), one),
-    ];
+    let kernels = [("simd", vectors, one), ("simd", vectors, two), ("scalar", Unit::scalar(), one)];
     let mut rows = Vec::new();
     for (kernel, unit, pool) in kernels {
         for least in [3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 18, 20, 24, 30] {
@@ -200,9 +189,8 @@ fn scene() -> Scene {
 fn detachment(pool: &ThreadPool) -> Vec<Value> {
     const POINTS: usize = 1024;
     let scene = scene();
-    let distances: Vec<f64> = (0..POINTS)
-        .map(|i| 2.0 + 18.0 * i as f64 / (POINTS - 1) as f64)
-        .collect();
+    let distances: Vec<f64> =
+        (0..POINTS).map(|i| 2.0 + 18.0 * i as f64 / (POINTS - 1) as f64).collect();
     let curves = |resolution| {
         Side::BOTH.map(|side| curve_at(resolution, &scene.whisker, &scene.pole, side, &distances))
     };

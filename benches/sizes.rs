@@ -14,9 +14,7 @@ use whiskmap::scene::Scene;
 const CELLS: usize = 1 << 18;
 
 fn main() {
-    let runs = std::env::args()
-        .find_map(|text| text.parse().ok())
-        .unwrap_or(5);
+    let runs = std::env::args().find_map(|text| text.parse().ok()).unwrap_or(5);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     let pool = pool.expect("a thread can be started");
     let sides = [64, 128, 256, 512, 1024, 2048].map(|side| (side, 1));
@@ -65,11 +63,7 @@ impl Map {
         }
         let scene = Scene::parse(&text, "cone.toml").expect("the scene is valid");
         let plan = Plan::new(&scene).expect("the map fits into memory");
-        assert_eq!(
-            plan.cells,
-            side * side * whiskers,
-            "the scene's text has changed"
-        );
+        assert_eq!(plan.cells, side * side * whiskers, "the scene's text has changed");
         Self { name, scene, plan }
     }
 

@@ -12,10 +12,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("side  distance  how         push angle");
     for (_, end) in curve(&scene, Options::default())? {
         let push = end.push_angle_deg.unwrap_or(f64::NAN);
-        println!(
-            "{:?}    {:5.1} mm  {:10?}  {push:9.4} deg",
-            end.side, end.distance_mm, end.kind
-        );
+        println!("{:?}    {:5.1} mm  {:10?}  {push:9.4} deg", end.side, end.distance_mm, end.kind);
     }
     Ok(())
 }

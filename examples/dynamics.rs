@@ -32,18 +32,8 @@ struct Case {
 }
 
 const CASES: [Case; 2] = [
-    Case {
-        stem: "cone",
-        distance_mm: 15.6604597633658,
-        title: "mouse, 20 mm",
-        unit: ("µN", 1.0),
-    },
-    Case {
-        stem: "robot",
-        distance_mm: 80.0,
-        title: "robot, 100 mm",
-        unit: ("mN", 1e-3),
-    },
+    Case { stem: "cone", distance_mm: 15.6604597633658, title: "mouse, 20 mm", unit: ("µN", 1.0) },
+    Case { stem: "robot", distance_mm: 80.0, title: "robot, 100 mm", unit: ("mN", 1e-3) },
 ];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -70,13 +60,9 @@ fn rows(table: &str, case: &Case, columns: &[&str]) -> Result<Vec<Vec<f64>>, Box
     let table = CsvTable::read(Path::new(FOLDER).join(table))?;
     let words = |name| table.values(name, "a word", |cell| Some(cell.to_owned()));
     let (scenes, sides) = (words("scene")?, words("side")?);
-    let pairs = scenes
-        .into_iter()
-        .flatten()
-        .zip(sides.into_iter().flatten());
-    let of_case: Vec<bool> = pairs
-        .map(|(scene, side)| scene == case.stem && side == "cb")
-        .collect();
+    let pairs = scenes.into_iter().flatten().zip(sides.into_iter().flatten());
+    let of_case: Vec<bool> =
+        pairs.map(|(scene, side)| scene == case.stem && side == "cb").collect();
     let mut rows = vec![Vec::new(); of_case.len()];
     for column in columns {
         let numbers = table.numbers(column, "a number", f64::is_finite)?;
@@ -85,10 +71,7 @@ fn rows(table: &str, case: &Case, columns: &[&str]) -> Result<Vec<Vec<f64>>, Box
             row.push(number);
         }
     }
-    let kept = rows
-        .into_iter()
-        .zip(of_case)
-        .filter(|(_, is_of_case)| *is_of_case);
+    let kept = rows.into_iter().zip(of_case).filter(|(_, is_of_case)| *is_of_case);
     Ok(kept.map(|(row, _)| row).collect())
 }
 
@@ -102,21 +85,14 @@ fn branch(case: &Case) -> Result<Vec<BranchPoint>, Box<dyn Error>> {
 fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
     let points = branch(case)?;
     let end = points.last().ok_or("no branch")?.push_angle_deg;
-    let columns = [
-        "damping_per_s",
-        "elements",
-        "rate_deg_per_s",
-        "push_angle_deg",
-    ];
+    let columns = ["damping_per_s", "elements", "rate_deg_per_s", "push_angle_deg"];
     let all = rows("detachments.csv", case, &columns)?;
     let mut dots = Vec::new();
     for row in &all {
         let [damping, elements, rate, push] = row[..] else {
             continue;
         };
-        let Some(index) = DAMPINGS
-            .iter()
-            .position(|series_damping| *series_damping == damping)
+        let Some(index) = DAMPINGS.iter().position(|series_damping| *series_damping == damping)
         else {
             continue;
         };
@@ -129,14 +105,9 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
         });
     }
     // The law of a delayed saddle-node, through the middle of the slow pushes.
-    let slow = dots
-        .iter()
-        .filter(|dot| dot.at[0] <= 8.0 && dot.at[1] > 0.0);
+    let slow = dots.iter().filter(|dot| dot.at[0] <= 8.0 && dot.at[1] > 0.0);
     let (logs, count) = slow.fold((0.0, 0.0), |(sum, count), dot| {
-        (
-            sum + (dot.at[1] / dot.at[0].powf(2.0 / 3.0)).ln(),
-            count + 1.0,
-        )
+        (sum + (dot.at[1] / dot.at[0].powf(2.0 / 3.0)).ln(), count + 1.0)
     });
     let factor = f64::exp(logs / f64::max(count, 1.0));
     let law = [0.4, 3000.0].map(|rate: f64| [rate, factor * rate.powf(2.0 / 3.0)]);
@@ -161,22 +132,13 @@ fn lags(case: &Case) -> Result<Plot, Box<dyn Error>> {
 fn forces(case: &Case) -> Result<Plot, Box<dyn Error>> {
     let points = branch(case)?;
     let (unit, factor) = case.unit;
-    let curve = points
-        .iter()
-        .map(|point| [point.push_angle_deg, factor * point.force_un]);
+    let curve = points.iter().map(|point| [point.push_angle_deg, factor * point.force_un]);
     let mut lines =
         vec![Line::new(curve.collect(), Ink::Black, Stroke::Solid).named("quasi-static")];
-    let columns = [
-        "damping_per_s",
-        "rate_deg_per_s",
-        "push_angle_deg",
-        "force_un",
-    ];
+    let columns = ["damping_per_s", "rate_deg_per_s", "push_angle_deg", "force_un"];
     let all = rows("forces.csv", case, &columns)?;
     for (index, rate) in RATES.into_iter().enumerate() {
-        let pushes = all
-            .iter()
-            .filter(|row| row[0] == DAMPINGS[0] && row[1] == rate);
+        let pushes = all.iter().filter(|row| row[0] == DAMPINGS[0] && row[1] == rate);
         let points: Vec<_> = pushes.map(|row| [row[2], factor * row[3]]).collect();
         lines
             .push(Line::new(points, Ink::Series(index), Stroke::Solid).named(format!("{rate}°/s")));

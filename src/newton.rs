@@ -122,11 +122,7 @@ pub struct BatchNewton {
 impl BatchNewton {
     /// Creates a Newton loop with at most `most_trajectories` for each problem by `method`. Results do not depend on the other problems.
     pub const fn new(method: Method, most_trajectories: u32) -> Self {
-        Self {
-            method,
-            sharing: LaneSharing::EqualSteps,
-            most_trajectories,
-        }
+        Self { method, sharing: LaneSharing::EqualSteps, most_trajectories }
     }
 
     /// Iterates each of the `problems` from its start in `(tau, load)`, on the calling thread unless blocks are padded. Returns one

@@ -77,19 +77,14 @@ mod tests {
     fn the_bits_are_those_of_splitmix64() {
         let mut stream = RandomStream::of_state(1_234_567);
         let expected = [6_457_827_717_110_365_317_u64, 3_203_168_211_198_807_973];
-        assert_eq!(
-            expected.map(|bits| bits >> 11),
-            [stream.bits(), stream.bits()]
-        );
+        assert_eq!(expected.map(|bits| bits >> 11), [stream.bits(), stream.bits()]);
     }
 
     /// Moments of 100,000 numbers, within five of their standard errors.
     #[test]
     fn the_numbers_are_normal() {
         const COUNT: u64 = 100_000;
-        let numbers: Vec<f64> = (0..COUNT)
-            .map(|i| RandomStream::new(1, i).normal())
-            .collect();
+        let numbers: Vec<f64> = (0..COUNT).map(|i| RandomStream::new(1, i).normal()).collect();
         for (power, expected, variance) in
             [(1, 0.0, 1.0), (2, 1.0, 2.0), (3, 0.0, 15.0), (4, 3.0, 96.0)]
         {

@@ -52,9 +52,7 @@ impl StandardOutput {
     /// Opens standard output for results.
     #[must_use]
     pub fn open() -> Self {
-        Self {
-            unfinished: io::stdout().is_terminal().then(Vec::new),
-        }
+        Self { unfinished: io::stdout().is_terminal().then(Vec::new) }
     }
 }
 

@@ -101,10 +101,7 @@ fn whiskers_that_coil_up_have_an_estimate() {
         let found = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
         let whisker = scene.first_whisker().whisker;
         let errors = Side::BOTH.map(|side| cells(&scene, &whisker, side, found.resolution));
-        assert!(
-            errors.iter().all(|error| *error <= found.error_deg),
-            "{errors:?} {found:?}"
-        );
+        assert!(errors.iter().all(|error| *error <= found.error_deg), "{errors:?} {found:?}");
     }
 }
 

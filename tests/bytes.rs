@@ -9,25 +9,16 @@ use whiskmap::{Error, Options, for_each_panel};
 
 /// FNV-1a of some bytes.
 fn fnv(hash: u64, bytes: impl IntoIterator<Item = u8>) -> u64 {
-    bytes.into_iter().fold(hash, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    bytes
+        .into_iter()
+        .fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// The hash of every channel of a panel, as a store has it.
 fn hashed(hash: u64, panel: &Panel) -> u64 {
     let codes = [&panel.regime, &panel.status, &panel.newton_steps];
-    let numbers = panel
-        .state
-        .iter()
-        .chain([&panel.residual, &panel.margin_deg]);
-    let hash = fnv(
-        hash,
-        codes
-            .into_iter()
-            .flatten()
-            .flat_map(|code| code.to_le_bytes()),
-    );
+    let numbers = panel.state.iter().chain([&panel.residual, &panel.margin_deg]);
+    let hash = fnv(hash, codes.into_iter().flatten().flat_map(|code| code.to_le_bytes()));
     fnv(hash, numbers.flatten().flat_map(|x| x.to_le_bytes()))
 }
 

@@ -46,12 +46,7 @@ fn target(distance_mm: f64, side: Side, kind: DetachmentKind, push_angle_deg: f6
         DetachmentKind::PullOff => DesignGoal::PullOff,
         _ => DesignGoal::SlipOff,
     };
-    DesignTarget {
-        distance_mm,
-        side,
-        goal,
-        value: push_angle_deg,
-    }
+    DesignTarget { distance_mm, side, goal, value: push_angle_deg }
 }
 
 /// Every value does what is asked for, to the last of the tolerance.
@@ -72,18 +67,11 @@ fn known_values_come_back() {
     let spiral = include_str!("../scenes/euler_spiral.toml");
     let spiral = Scene::parse(spiral, "euler_spiral.toml").unwrap();
     let mut found = 0;
-    for (scene, distance, side) in [
-        (&scene, 13.0, Side::Cf),
-        (&scene, 18.5, Side::Cb),
-        (&spiral, 12.0, Side::Cb),
-    ] {
+    for (scene, distance, side) in
+        [(&scene, 13.0, Side::Cf), (&scene, 18.5, Side::Cb), (&spiral, 12.0, Side::Cb)]
+    {
         let reached = end(scene, distance, side);
-        let target = target(
-            distance,
-            side,
-            reached.kind,
-            reached.push_angle_deg.unwrap(),
-        );
+        let target = target(distance, side, reached.kind, reached.push_angle_deg.unwrap());
         for parameter in Parameter::ALL {
             let Some(value) = parameter.value(scene) else {
                 continue;
@@ -163,17 +151,11 @@ fn kinds_are_told_apart() {
         assert_eq!(ask(DetachmentKind::PullOff, corner - away).values.len(), 0);
     }
     // The ends of the range are solutions, too.
-    for (kind, push, value) in [
-        (DetachmentKind::SlipOff, least, 1.0),
-        (DetachmentKind::PullOff, most, 0.0),
-    ] {
+    for (kind, push, value) in
+        [(DetachmentKind::SlipOff, least, 1.0), (DetachmentKind::PullOff, most, 0.0)]
+    {
         let values = ask(kind, push).values;
-        assert!(
-            values
-                .iter()
-                .any(|solution| (solution - value).abs() < 1e-6),
-            "{values:?}"
-        );
+        assert!(values.iter().any(|solution| (solution - value).abs() < 1e-6), "{values:?}");
     }
 }
 
@@ -197,45 +179,21 @@ fn what_cannot_be_asked_for_is_refused() {
     let why = design(&scene, Parameter::Friction, &asked).unwrap_err();
     let said = why.to_string();
     assert!(matches!(why, DesignError::Lacking { .. }));
-    for part in [
-        "friction: must be one of length_mm, ",
-        "taper",
-        "it has no contact.friction",
-    ] {
+    for part in ["friction: must be one of length_mm, ", "taper", "it has no contact.friction"] {
         assert!(said.contains(part), "{said}");
     }
     let measured =
         include_str!("../scenes/measured.toml").replace("\"measured.csv\"", "[[0, 30], [20, 1.5]]");
     let measured = Scene::parse(&measured, "measured.toml").unwrap();
-    let near = DesignTarget {
-        distance_mm: 15.0,
-        ..asked
-    };
+    let near = DesignTarget { distance_mm: 15.0, ..asked };
     let why = design(&measured, Parameter::LengthMm, &near).unwrap_err();
-    assert!(
-        why.to_string()
-            .contains("accepts no value but 20 for whisker.length_mm"),
-        "{why}"
-    );
-    assert!(matches!(
-        design(&measured, Parameter::Taper, &near),
-        Err(DesignError::Lacking { .. })
-    ));
-    let axis = scene
-        .to_builder()
-        .sweep(Parameter::ParabolaPerMm, [0.004])
-        .build()
-        .unwrap();
+    assert!(why.to_string().contains("accepts no value but 20 for whisker.length_mm"), "{why}");
+    assert!(matches!(design(&measured, Parameter::Taper, &near), Err(DesignError::Lacking { .. })));
+    let axis = scene.to_builder().sweep(Parameter::ParabolaPerMm, [0.004]).build().unwrap();
     let why = design(&axis, Parameter::ParabolaPerMm, &asked).unwrap_err();
     assert_eq!(why, DesignError::Sweep("grid.curvature_per_mm"));
-    let far = DesignTarget {
-        distance_mm: 1e9,
-        ..asked
-    };
-    assert!(matches!(
-        design(&scene, Parameter::Taper, &far),
-        Err(DesignError::Distance(_))
-    ));
+    let far = DesignTarget { distance_mm: 1e9, ..asked };
+    assert!(matches!(design(&scene, Parameter::Taper, &far), Err(DesignError::Distance(_))));
 }
 
 /// Nothing that detaches depends on Young's modulus: every value reaches the target, or none does.
@@ -279,27 +237,9 @@ fn values_that_do_not_matter_in_a_range_are_the_range() {
     let cylinder = include_str!("../scenes/cylinder.toml");
     let cylinder = Scene::parse(cylinder, "cylinder.toml").unwrap();
     for (scene, distance_mm, side, goal, parameter) in [
-        (
-            &soft,
-            8.0,
-            Side::Cb,
-            DesignGoal::MaxForce,
-            Parameter::FollicleStiffness,
-        ),
-        (
-            &clamped,
-            5.0,
-            Side::Cb,
-            DesignGoal::MaxForce,
-            Parameter::LengthMm,
-        ),
-        (
-            &cylinder,
-            5.0,
-            Side::Cf,
-            DesignGoal::SlipOff,
-            Parameter::LengthMm,
-        ),
+        (&soft, 8.0, Side::Cb, DesignGoal::MaxForce, Parameter::FollicleStiffness),
+        (&clamped, 5.0, Side::Cb, DesignGoal::MaxForce, Parameter::LengthMm),
+        (&cylinder, 5.0, Side::Cf, DesignGoal::SlipOff, Parameter::LengthMm),
     ] {
         // The search's own peaks: 2,000 states are not accurate enough.
         let value_at = |value: f64| {
@@ -313,12 +253,7 @@ fn values_that_do_not_matter_in_a_range_are_the_range() {
         };
         let own = parameter.value(scene).unwrap();
         let value = value_at(own);
-        let target = DesignTarget {
-            distance_mm,
-            side,
-            goal,
-            value,
-        };
+        let target = DesignTarget { distance_mm, side, goal, value };
         let design = design(scene, parameter, &target).unwrap();
         let [[least, greatest]] = design.spans[..] else {
             panic!("{parameter:?} {:?} {:?}", design.spans, design.values);
@@ -349,11 +284,9 @@ fn the_largest_load_of_a_push_reaches_the_target() {
     let cylinder = include_str!("../scenes/cylinder.toml");
     let cylinder = Scene::parse(cylinder, "cylinder.toml").unwrap();
     let mut before_the_end = 0;
-    for (scene, distance_mm, side) in [
-        (&robot(), 60.0, Side::Cb),
-        (&robot(), 95.0, Side::Cb),
-        (&cylinder, 6.0, Side::Cf),
-    ] {
+    for (scene, distance_mm, side) in
+        [(&robot(), 60.0, Side::Cb), (&robot(), 95.0, Side::Cb), (&cylinder, 6.0, Side::Cf)]
+    {
         let states = |scene: &Scene| {
             let branch = Branch::new(&scene.whisker, &scene.pole, side, distance_mm).unwrap();
             branch.points(4000).unwrap()
@@ -367,29 +300,18 @@ fn the_largest_load_of_a_push_reaches_the_target() {
             };
             let (value, is_before) = most(&own_states);
             before_the_end += u32::from(is_before);
-            let target = DesignTarget {
-                distance_mm,
-                side,
-                goal,
-                value,
-            };
+            let target = DesignTarget { distance_mm, side, goal, value };
             let parameter = Parameter::BaseRadiusUm;
             let design = design(scene, parameter, &target).unwrap();
             let current = parameter.value(scene).unwrap();
-            let off = design
-                .values
-                .iter()
-                .map(|value| (value / current - 1.0).abs());
+            let off = design.values.iter().map(|value| (value / current - 1.0).abs());
             let off = off.fold(f64::INFINITY, f64::min);
             let values = &design.values;
             assert!(off < 2e-6, "{goal:?} {side:?} at {distance_mm}: {values:?}");
             for found in &design.values {
                 let (reached, _) = most(&states(&scene.with(parameter, *found).unwrap()));
                 let off = reached / value - 1.0;
-                assert!(
-                    (-1e-5..2e-6).contains(&off),
-                    "{goal:?} {found}: {reached} {value}"
-                );
+                assert!((-1e-5..2e-6).contains(&off), "{goal:?} {found}: {reached} {value}");
             }
         }
     }
@@ -399,10 +321,7 @@ fn the_largest_load_of_a_push_reaches_the_target() {
 /// A design of several numbers within the limits of the scene.
 fn varied(variables: &[Variable]) -> DesignVaried {
     let variables = variables.iter().copied();
-    let variables = variables.map(|variable| DesignVariable {
-        variable,
-        limits: None,
-    });
+    let variables = variables.map(|variable| DesignVariable { variable, limits: None });
     variables.collect()
 }
 
@@ -441,27 +360,9 @@ fn several_numbers_come_back_from_as_many_targets() {
     use DesignGoal::{MaxForce, MaxMoment, MaxStrain, SlipOff};
     let (robot, rough) = (robot(), everything());
     for (scene, side, distance_mm, variables, goals) in [
-        (
-            &robot,
-            Side::Cb,
-            60.0,
-            &[BASE, TAPER][..],
-            &[SlipOff, MaxMoment][..],
-        ),
-        (
-            &robot,
-            Side::Cb,
-            60.0,
-            &[Variable::DistanceMm, BASE],
-            &[SlipOff, MaxForce],
-        ),
-        (
-            &robot,
-            Side::Cb,
-            60.0,
-            &[BASE, TAPER, MODULUS],
-            &[SlipOff, MaxMoment, MaxStrain],
-        ),
+        (&robot, Side::Cb, 60.0, &[BASE, TAPER][..], &[SlipOff, MaxMoment][..]),
+        (&robot, Side::Cb, 60.0, &[Variable::DistanceMm, BASE], &[SlipOff, MaxForce]),
+        (&robot, Side::Cb, 60.0, &[BASE, TAPER, MODULUS], &[SlipOff, MaxMoment, MaxStrain]),
         (&rough, Side::Cf, 13.0, &[BASE, TAPER], &[SlipOff, MaxForce]),
     ] {
         let target = |goal: &DesignGoal| DesignTarget {
@@ -472,10 +373,7 @@ fn several_numbers_come_back_from_as_many_targets() {
         };
         let targets: Vec<DesignTarget> = goals.iter().map(target).collect();
         let found = designs(scene, &varied(variables), &targets).unwrap();
-        assert!(
-            !found.is_undetermined && found.nearest.is_none(),
-            "{found:?}"
-        );
+        assert!(!found.is_undetermined && found.nearest.is_none(), "{found:?}");
         let current = |variable: &Variable| variable.value(scene).unwrap_or(distance_mm);
         // The largest values of 2,000 states are up to 1e-6 below those of the push.
         let is_own = |values: &Vec<f64>| {
@@ -506,11 +404,7 @@ fn several_numbers_come_back_from_as_many_targets() {
 fn nearest_values_are_at_the_limit_that_stops_them() {
     let scene = robot();
     let slip_off = target(60.0, Side::Cb, DetachmentKind::SlipOff, 35.0);
-    let moment = DesignTarget {
-        goal: DesignGoal::MaxMoment,
-        value: 1e9,
-        ..slip_off
-    };
+    let moment = DesignTarget { goal: DesignGoal::MaxMoment, value: 1e9, ..slip_off };
     let mut varied = varied(&[BASE, TAPER]);
     let most = 1.1 * scene.whisker.base_radius_um;
     varied.variables[0].limits = Some([100.0, most]);
@@ -531,10 +425,7 @@ fn a_line_of_solutions_is_reported() {
         value: factor * reached(&scene, 60.0, Side::Cb, goal),
     };
     // The scene's own slip-off at any radius of the same shape, and the moment by radius or modulus.
-    let targets = [
-        of(DesignGoal::MaxForce, 2.0),
-        of(DesignGoal::MaxMoment, 2.0),
-    ];
+    let targets = [of(DesignGoal::MaxForce, 2.0), of(DesignGoal::MaxMoment, 2.0)];
     let mut varied = varied(&[BASE, MODULUS]);
     varied.keeps_taper = true;
     assert!(designs(&scene, &varied, &targets).unwrap().is_undetermined);
@@ -545,13 +436,8 @@ fn a_line_of_solutions_is_reported() {
 fn what_follows_a_varied_number_follows() {
     let scene = robot();
     let whisker = &scene.whisker;
-    let length = DesignVaried {
-        distance_to_length: Some(0.6),
-        ..Parameter::LengthMm.into()
-    };
-    let short = scene
-        .with(Parameter::LengthMm, 0.8 * whisker.length_mm)
-        .unwrap();
+    let length = DesignVaried { distance_to_length: Some(0.6), ..Parameter::LengthMm.into() };
+    let short = scene.with(Parameter::LengthMm, 0.8 * whisker.length_mm).unwrap();
     let short_end = end(&short, 0.6 * short.whisker.length_mm, Side::Cb);
     let sought = target(
         0.6 * whisker.length_mm,
@@ -560,16 +446,10 @@ fn what_follows_a_varied_number_follows() {
         short_end.push_angle_deg.unwrap(),
     );
     let found = design(&scene, length, &sought).unwrap();
-    let off = found
-        .values
-        .iter()
-        .map(|distance| (distance / short.whisker.length_mm - 1.0).abs());
+    let off = found.values.iter().map(|distance| (distance / short.whisker.length_mm - 1.0).abs());
     assert!(off.fold(f64::INFINITY, f64::min) < 1e-9, "{found:?}");
 
-    let keeping = DesignVaried {
-        keeps_taper: true,
-        ..Parameter::BaseRadiusUm.into()
-    };
+    let keeping = DesignVaried { keeps_taper: true, ..Parameter::BaseRadiusUm.into() };
     let load = DesignTarget {
         distance_mm: 60.0,
         side: Side::Cb,
@@ -579,48 +459,24 @@ fn what_follows_a_varied_number_follows() {
     let found = design(&scene, keeping.clone(), &load).unwrap();
     // A whisker of the same shape: the moment grows with the fourth power of the radius.
     let wanted = whisker.base_radius_um * 2.0_f64.powf(0.25);
-    assert!(
-        (found.values[0] / wanted - 1.0).abs() < 1e-5,
-        "{:?} {wanted}",
-        found.values
-    );
-    let wider = scene
-        .with_parameters(&keeping.changes(&scene, &found.values))
-        .unwrap();
+    assert!((found.values[0] / wanted - 1.0).abs() < 1e-5, "{:?} {wanted}", found.values);
+    let wider = scene.with_parameters(&keeping.changes(&scene, &found.values)).unwrap();
     assert!((wider.whisker.taper() - whisker.taper()).abs() < 1e-12);
-    let other = DesignVaried {
-        keeps_taper: true,
-        ..Parameter::LengthMm.into()
-    };
+    let other = DesignVaried { keeps_taper: true, ..Parameter::LengthMm.into() };
     assert_eq!(design(&scene, other, &load), Err(DesignError::NoTaper));
 
     let reached = end(&scene, 60.0, Side::Cb);
-    let sought = target(
-        45.0,
-        Side::Cb,
-        reached.kind,
-        reached.push_angle_deg.unwrap(),
-    );
+    let sought = target(45.0, Side::Cb, reached.kind, reached.push_angle_deg.unwrap());
     let found = design(&scene, Variable::DistanceMm, &sought).unwrap();
-    assert!(
-        found.values.iter().any(|value| (value - 60.0).abs() < 1e-7),
-        "{found:?}"
-    );
+    assert!(found.values.iter().any(|value| (value - 60.0).abs() < 1e-7), "{found:?}");
 }
 
 #[test]
 fn designs_with_other_counts_and_numbers_are_refused() {
     let scene = robot();
     let slip_off = target(60.0, Side::Cb, DetachmentKind::SlipOff, 30.0);
-    let moment = DesignTarget {
-        goal: DesignGoal::MaxMoment,
-        value: 1e6,
-        ..slip_off
-    };
-    let other = DesignTarget {
-        distance_mm: 50.0,
-        ..moment
-    };
+    let moment = DesignTarget { goal: DesignGoal::MaxMoment, value: 1e6, ..slip_off };
+    let other = DesignTarget { distance_mm: 50.0, ..moment };
     let why = |variables: &[Variable], targets: &[DesignTarget]| {
         designs(&scene, &varied(variables), targets).unwrap_err()
     };

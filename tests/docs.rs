@@ -31,13 +31,8 @@ fn files(folder: &Path, extension: &str) -> Vec<PathBuf> {
 
 /// Returns path and text of every page.
 fn pages() -> Vec<(PathBuf, String)> {
-    let names = [
-        "README.md",
-        "ARCHITECTURE.md",
-        "CHANGELOG.md",
-        "CONTRIBUTING.md",
-        "tests/README.md",
-    ];
+    let names =
+        ["README.md", "ARCHITECTURE.md", "CHANGELOG.md", "CONTRIBUTING.md", "tests/README.md"];
     let paths = names.map(|name| root().join(name)).into_iter();
     let paths = paths.chain(files(&root().join("docs"), "md"));
     let read = |path: PathBuf| {
@@ -79,11 +74,7 @@ fn every_command_of_the_pages_runs() {
                 .output()
                 .expect("a run");
             let error = String::from_utf8_lossy(&run.stderr);
-            assert!(
-                run.status.success(),
-                "{}: {call:?}: {error}",
-                page.display()
-            );
+            assert!(run.status.success(), "{}: {call:?}: {error}", page.display());
             ran += 1;
         }
     }
@@ -191,10 +182,7 @@ fn the_numbers_of_scenes_are_on_their_pages() {
 
 /// Returns the number of cells of a row of a table; pipes in cells are escaped.
 fn cells(row: &str) -> usize {
-    row.replace("\\|", "")
-        .matches('|')
-        .count()
-        .saturating_sub(1)
+    row.replace("\\|", "").matches('|').count().saturating_sub(1)
 }
 
 /// A table has a blank line before it, a second line of dashes, and equally many cells in each row.
@@ -215,17 +203,10 @@ fn tables_are_complete() {
             let before = number.checked_sub(1).map_or("", |before| lines[before]);
             assert!(before.is_empty(), "{place}: no blank line before the table");
             let is_rule = |row: &&str| row.chars().all(|c| "|-: ".contains(c));
-            let rules: Vec<_> = rows
-                .iter()
-                .enumerate()
-                .filter(|(_, row)| is_rule(row))
-                .collect();
+            let rules: Vec<_> = rows.iter().enumerate().filter(|(_, row)| is_rule(row)).collect();
             assert!(matches!(rules[..], [(1, _)]), "{place}: no line of dashes");
             for row in &rows {
-                assert!(
-                    row.ends_with('|') && cells(row) == cells(rows[0]),
-                    "{place}: {row}"
-                );
+                assert!(row.ends_with('|') && cells(row) == cells(rows[0]), "{place}: {row}");
             }
             tables += 1;
             number += rows.len();
@@ -237,9 +218,7 @@ fn tables_are_complete() {
 /// Returns the anchor of a heading, as GitHub forms it.
 fn anchor(heading: &str) -> String {
     let heading = heading.trim_start_matches('#').trim().to_lowercase();
-    let kept = heading
-        .chars()
-        .filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    let kept = heading.chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
     kept.map(|c| if c == ' ' { '-' } else { c }).collect()
 }
 
@@ -267,14 +246,7 @@ fn links_lead_to_files_and_headings() {
 /// Words in backticks that end in the name of a file, or in a slash, are paths from the root or from a source folder.
 #[test]
 fn paths_on_pages_about_the_code_exist() {
-    let bases = [
-        "",
-        "src",
-        "crates",
-        "crates/mechanics/src",
-        "tests",
-        "outputs",
-    ];
+    let bases = ["", "src", "crates", "crates/mechanics/src", "tests", "outputs"];
     let about_the_code = ["ARCHITECTURE.md", "CONTRIBUTING.md", "tests/README.md"];
     for (page, text) in pages() {
         if !about_the_code.iter().any(|name| page.ends_with(name)) {
@@ -285,9 +257,7 @@ fn paths_on_pages_about_the_code_exist() {
             if word.contains(char::is_whitespace) || !ends.iter().any(|end| word.ends_with(end)) {
                 continue;
             }
-            let exists = bases
-                .iter()
-                .any(|base| root().join(base).join(word).exists());
+            let exists = bases.iter().any(|base| root().join(base).join(word).exists());
             assert!(exists, "{}: `{word}`", page.display());
         }
     }
@@ -307,9 +277,7 @@ fn check_order(folder: &str, order: &[&str]) {
         let place = order.iter().position(|name| *name == module);
         assert!(place.is_some(), "{module}: not in the list of layers");
         let text = fs::read_to_string(&path).expect("a source file");
-        let code = text
-            .lines()
-            .filter(|line| !line.trim_start().starts_with("//"));
+        let code = text.lines().filter(|line| !line.trim_start().starts_with("//"));
         for rest in code.flat_map(|line| line.split("crate::").skip(1)) {
             let is_name = |c: char| c.is_alphanumeric() || c == '_';
             let used = rest.split(|c| !is_name(c)).next().unwrap_or_default();
@@ -365,9 +333,8 @@ fn every_test_file_is_in_a_program_and_on_the_page_of_the_tests() {
 
 /// Returns true if a summary does not name its subject.
 fn is_fragment(summary: &str) -> bool {
-    let starts = [
-        "Of", "That of", "Those", "The same", "Whether", "From", "Between", "How", "Where",
-    ];
+    let starts =
+        ["Of", "That of", "Those", "The same", "Whether", "From", "Between", "How", "Where"];
     starts.iter().any(|start| {
         let rest = summary.strip_prefix(start);
         rest.is_some_and(|rest| !rest.starts_with(char::is_alphanumeric))
@@ -379,12 +346,7 @@ fn fragments_are_recognized() {
     for text in ["Of the rod.", "That of `x`.", "Whether it is", "The same"] {
         assert!(is_fragment(text), "{text}");
     }
-    for text in [
-        "Offset in bytes.",
-        "The sameness",
-        "That off",
-        "Angle of the rod.",
-    ] {
+    for text in ["Offset in bytes.", "The sameness", "That off", "Angle of the rod."] {
         assert!(!is_fragment(text), "{text}");
     }
 }

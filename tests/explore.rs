@@ -10,11 +10,7 @@ fn sources(root: &Path) -> String {
     let folders = ["crates/web/page", "crates/web/src"].into_iter();
     let below = folders.flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
     let below = below.map(|entry| entry.unwrap().path());
-    let others = [
-        "crates/web/assemble.py",
-        "crates/web/build.sh",
-        "scenes/cone.toml",
-    ];
+    let others = ["crates/web/assemble.py", "crates/web/build.sh", "scenes/cone.toml"];
     let others = others.map(|name| root.join(name));
     let name = |path: PathBuf| {
         let path = path.strip_prefix(root).unwrap().to_owned();
@@ -46,11 +42,7 @@ fn the_page_is_built_from_its_sources() {
     let version = format!("whiskmap {}. Mechanics", env!("CARGO_PKG_VERSION"));
     assert!(page.contains(&version), "{advice}");
     let policy = of("Content-Security-Policy");
-    for rule in [
-        "default-src 'none'",
-        "connect-src 'none'",
-        "worker-src blob:",
-    ] {
+    for rule in ["default-src 'none'", "connect-src 'none'", "worker-src blob:"] {
         assert!(policy.contains(rule), "{policy}");
     }
     assert!(!policy.contains("unsafe-inline"), "{policy}");

@@ -36,17 +36,11 @@ fn a_pad_lets_go_later() {
 fn random(random: &mut Random) -> (Whisker, Pole) {
     let whisker = Whisker {
         tip_radius_um: random.between(0.0, 15.0),
-        curvature: Some(Curvature {
-            parabola_per_mm: random.between(0.0, 0.03),
-            vertex_mm: 0.0,
-        }),
+        curvature: Some(Curvature { parabola_per_mm: random.between(0.0, 0.03), vertex_mm: 0.0 }),
         modulus_tip_to_base: random.between(0.5, 2.0),
         ..cone(None)
     };
-    let pole = Pole {
-        radius_mm: random.between(0.0, 0.4),
-        friction: random.between(0.0, 0.3),
-    };
+    let pole = Pole { radius_mm: random.between(0.0, 0.4), friction: random.between(0.0, 0.3) };
     (whisker, pole)
 }
 
@@ -66,10 +60,7 @@ fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
         }
         let pole = Pole::smooth(pole.radius_mm);
         let stiffness = clamped.units().moment_nnm * numbers.between(0.2, 5.0);
-        let held = Whisker {
-            follicle_stiffness_nnm_per_rad: Some(stiffness),
-            ..clamped.clone()
-        };
+        let held = Whisker { follicle_stiffness_nnm_per_rad: Some(stiffness), ..clamped.clone() };
         for side in Side::BOTH {
             let distance_mm = numbers.between(range[0], range[1]);
             let end = curve(&held, &pole, side, &[distance_mm])[0];
@@ -85,10 +76,7 @@ fn a_push_is_that_of_a_clamp_and_the_turn_of_the_follicle() {
             kinds[usize::from(end.kind == DetachmentKind::PullOff)] += 1;
             let push = side.sign() * end.push_angle_deg.unwrap();
             // Points are 0.02 degrees apart, and the top is flat.
-            assert!(
-                (push - largest).abs() < 1e-4,
-                "{held:?} {side:?}: {push} {largest}"
-            );
+            assert!((push - largest).abs() < 1e-4, "{held:?} {side:?}: {push} {largest}");
         }
     }
     assert!(kinds.iter().all(|count| *count > 2), "{kinds:?}");
@@ -99,10 +87,7 @@ fn a_stiff_follicle_is_a_clamp() {
     let mut numbers = Random::new(6);
     for _ in 0..8 {
         let (clamped, pole) = random(&mut numbers);
-        let held = Whisker {
-            follicle_stiffness_nnm_per_rad: Some(1e15),
-            ..clamped.clone()
-        };
+        let held = Whisker { follicle_stiffness_nnm_per_rad: Some(1e15), ..clamped.clone() };
         for side in Side::BOTH {
             let distances = [2.0, 5.0, 8.0, 11.0, 14.0];
             let [held, clamped] =
@@ -121,10 +106,7 @@ fn a_stiff_follicle_is_a_clamp() {
 #[test]
 fn the_base_turns_and_the_spring_stores_energy() {
     let stiffness = 5000.0;
-    let whisker = Whisker {
-        tip_radius_um: 2.0,
-        ..cone(Some(stiffness))
-    };
+    let whisker = Whisker { tip_radius_um: 2.0, ..cone(Some(stiffness)) };
     let branch = Branch::new(&whisker, &Pole::smooth(0.3), Side::Cb, 6.0).unwrap();
     let points = branch.points(2001).unwrap();
     let mut work = 0.0;
@@ -132,10 +114,7 @@ fn the_base_turns_and_the_spring_stores_energy() {
         let turn = (pair[1].push_angle_deg - pair[0].push_angle_deg).to_radians();
         work += 0.5 * (pair[0].base_moment_nnm + pair[1].base_moment_nnm) * turn;
         let energy = pair[1].energy_nj;
-        assert!(
-            (work - energy).abs() < 1e-5 * energy.max(1.0),
-            "{work} {energy}"
-        );
+        assert!((work - energy).abs() < 1e-5 * energy.max(1.0), "{work} {energy}");
     }
     let state = branch.state(40f64.to_radians(), true).unwrap();
     let shape = branch.shape(&state, 200);
@@ -174,10 +153,7 @@ fn engines_agree_from_hinge_to_clamp() {
         cells.filter(|cell| cell.regime == Regime::Contact).count()
     };
     let contacts: Vec<usize> = (0..4).map(contacts).collect();
-    assert!(
-        contacts.windows(2).all(|pair| pair[0] > pair[1]),
-        "{contacts:?}"
-    );
+    assert!(contacts.windows(2).all(|pair| pair[0] > pair[1]), "{contacts:?}");
 }
 
 /// Largest push angle whose end is found, in turns (`docs/scenes.md`).
@@ -188,16 +164,8 @@ const PUSHES_DEG: [f64; 8] = [-360.0, -90.0, -5.0, -1e-6, 1e-6, 5.0, 90.0, 360.0
 
 /// The whisker in a follicle of this stiffness, at a pole of 0.25 mm.
 fn soft_scene(whisker: &Whisker, stiffness: f64, distances_mm: &[f64]) -> Scene {
-    let Whisker {
-        length_mm,
-        base_radius_um,
-        tip_radius_um,
-        youngs_modulus_gpa,
-        ..
-    } = whisker;
-    let bend = whisker
-        .curvature
-        .map_or(0.0, |parabola| parabola.parabola_per_mm);
+    let Whisker { length_mm, base_radius_um, tip_radius_um, youngs_modulus_gpa, .. } = whisker;
+    let bend = whisker.curvature.map_or(0.0, |parabola| parabola.parabola_per_mm);
     let text = format!(
         "title = 'Soft'\n[whisker]\nlength_mm = {length_mm}\nbase_radius_um = {base_radius_um}\ntip_radius_um = {tip_radius_um}\n\
          youngs_modulus_gpa = {youngs_modulus_gpa}\ncurvature.parabola_per_mm = {bend}\n\
@@ -214,10 +182,7 @@ fn pushes_in_soft_follicles_end_within_nine_turns_or_are_unresolved() {
     let distances = [0.4, 6.0, 14.0, 15.9];
     let curved = |tip_radius_um: f64| Whisker {
         tip_radius_um,
-        curvature: Some(Curvature {
-            parabola_per_mm: 0.02,
-            vertex_mm: 0.0,
-        }),
+        curvature: Some(Curvature { parabola_per_mm: 0.02, vertex_mm: 0.0 }),
         ..cone(None)
     };
     let mut counts = [0; 2];
@@ -225,10 +190,8 @@ fn pushes_in_soft_follicles_end_within_nine_turns_or_are_unresolved() {
         let pole = Pole::smooth(0.25);
         let soft = [1.0, 100.0].map(|compliance| clamped.units().moment_nnm / compliance);
         for stiffness in soft.into_iter().chain([1e-6]) {
-            let held = Whisker {
-                follicle_stiffness_nnm_per_rad: Some(stiffness),
-                ..clamped.clone()
-            };
+            let held =
+                Whisker { follicle_stiffness_nnm_per_rad: Some(stiffness), ..clamped.clone() };
             let maps = [MapEngine::Cpu, MapEngine::Spectral].map(|engine| {
                 let mut options = Options::default();
                 options.engine = engine;
@@ -297,10 +260,7 @@ fn a_fit_recovers_the_stiffness() {
         let fit = fit(&start, &points, &[stiffness]).unwrap();
         let found = fit.estimates[0];
         assert!((found.value / 5000.0 - 1.0).abs() < 1e-7, "{found:?}");
-        assert!(
-            found.standard_error.unwrap() < 1e-6 * found.value,
-            "{found:?}"
-        );
+        assert!(found.standard_error.unwrap() < 1e-6 * found.value, "{found:?}");
     }
 }
 
@@ -310,10 +270,7 @@ fn states_beyond_nine_turns_are_left_out() {
     let branch = |stiffness| Branch::new(&cone(Some(stiffness)), &Pole::smooth(0.0), Side::Cb, 5.0);
     let why = branch(5.0).unwrap_err();
     assert_eq!(why, NoState::BeyondTurns);
-    assert!(
-        why.to_string()
-            .contains("nine turns of the base (3240 deg)")
-    );
+    assert!(why.to_string().contains("nine turns of the base (3240 deg)"));
     let kinds = [5.0, 25.0].map(|stiffness| {
         let end = curve(&cone(Some(stiffness)), &Pole::smooth(0.0), Side::Cb, &[5.0])[0];
         (end.kind, end.push_angle_deg)

@@ -27,11 +27,7 @@ fn frame_of(
     // From the frame of the pole to that of the base, which is turned by -push.
     let (sin, cos) = push_deg.to_radians().sin_cos();
     let in_base = |x: f64, y: f64| [cos * x - sin * y, sin * x + cos * y];
-    let contact = shape
-        .points
-        .iter()
-        .find(|point| point.part == WhiskerPart::Contact)
-        .unwrap();
+    let contact = shape.points.iter().find(|point| point.part == WhiskerPart::Contact).unwrap();
     let at = &shape.points[(100.0 * part) as usize];
     let frame = CurvatureFrame {
         line: 2,
@@ -64,12 +60,7 @@ fn frame(
 }
 
 fn force(scene: &Scene, frame: &CurvatureFrame, method: ForceMethod) -> FrameForce {
-    forces(
-        &scene.whisker,
-        &scene.pole,
-        std::slice::from_ref(frame),
-        method,
-    )[0]
+    forces(&scene.whisker, &scene.pole, std::slice::from_ref(frame), method)[0]
 }
 
 /// Both methods return force and moment of states, from first touch to just before the detachment, on both sides.
@@ -80,11 +71,7 @@ fn forces_of_states_come_back() {
         // The curvature turns back at 16.39 and 28.38 degrees, and another state has it, too.
         ("cone", 14.0, &[16.0647]),
         ("cone", 10.0, &[27.8137]),
-        (
-            "cylinder",
-            15.66,
-            &[-100.56, -100.27, -30.0, -1.0, 1.0, 62.0],
-        ),
+        ("cylinder", 15.66, &[-100.56, -100.27, -30.0, -1.0, 1.0, 62.0]),
         ("robot", 60.0, &[-49.9, -20.0, -1.0, 1.0, 20.0, 36.0]),
         ("measured", 12.0, &[-45.0, -10.0, -1.0, 1.0, 10.0, 32.8]),
         ("traced", 12.0, &[-39.9, -10.0, -1.0, 1.0, 10.0, 28.9]),
@@ -128,11 +115,9 @@ fn forces_of_states_come_back() {
 #[test]
 fn points_beyond_the_contact_of_the_resting_whisker_have_a_force() {
     let mut count = 0;
-    for (name, distance, push) in [
-        ("cylinder", 10.0, -110.0),
-        ("robot", 60.0, -42.0),
-        ("cone", 15.66, -24.0),
-    ] {
+    for (name, distance, push) in
+        [("cylinder", 10.0, -110.0), ("robot", 60.0, -42.0), ("cone", 15.66, -24.0)]
+    {
         let scene = shipped::scene(name);
         let first = distance / scene.whisker.length_mm;
         for part in (0..40).map(|i| first + 0.01 * f64::from(i)) {
@@ -157,10 +142,7 @@ fn points_beyond_the_contact_of_the_resting_whisker_have_a_force() {
 #[test]
 fn forces_of_a_follicle_come_back_in_both_frames() {
     let scene = shipped::scene("follicle");
-    let clamp = Whisker {
-        follicle_stiffness_nnm_per_rad: None,
-        ..scene.whisker.clone()
-    };
+    let clamp = Whisker { follicle_stiffness_nnm_per_rad: None, ..scene.whisker.clone() };
     let at_fold = curve(&clamp, &scene.pole, Side::Cb, &[5.0])[0].base_moment_nnm;
     let compliance = 1.0 / scene.whisker.follicle_stiffness_nnm_per_rad.unwrap();
     let mut beyond = 0;
@@ -183,12 +165,7 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
         let on_base = [state.base_force_x_un, state.base_force_y_un];
         beyond += usize::from(state.base_moment_nnm.abs() > at_fold.unwrap().abs());
         for (axis, frame, on_base, angle) in [
-            (
-                BaseAxis::Follicle,
-                &in_follicle,
-                on_base,
-                state.contact_angle_deg,
-            ),
+            (BaseAxis::Follicle, &in_follicle, on_base, state.contact_angle_deg),
             (BaseAxis::Tangent, &in_film, turned(on_base), angle),
         ] {
             for method in [ForceMethod::Lever, ForceMethod::Model] {
@@ -222,11 +199,7 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
                     });
                     [0, 1, 2, 3].map(|i| (to[i] - from[i]) / 2e-3)
                 };
-                let steps = [
-                    [1e-7, 0.0, 0.0, 0.0],
-                    [0.0, 1e-5, 0.0, 0.0],
-                    [0.0, 0.0, 1e-5, 0.0],
-                ];
+                let steps = [[1e-7, 0.0, 0.0, 0.0], [0.0, 1e-5, 0.0, 0.0], [0.0, 0.0, 1e-5, 0.0]];
                 let by = steps.map(by);
                 let sds = [
                     row.force_sd_un,
@@ -253,21 +226,12 @@ fn forces_of_a_follicle_come_back_in_both_frames() {
 #[test]
 fn forces_of_the_model_have_the_strains_of_their_states() {
     for name in ["cone", "follicle"] {
-        let scene = shipped::scene(name)
-            .to_builder()
-            .yield_strain(0.01)
-            .build()
-            .unwrap();
+        let scene = shipped::scene(name).to_builder().yield_strain(0.01).build().unwrap();
         for push in [-20.0, 15.0] {
             let (frame, state) = frame(&scene, 9.0, push, 0.1);
-            let options = ForceOptions {
-                axis: BaseAxis::Follicle,
-                ..ForceOptions::new(ForceMethod::Model)
-            };
-            let free = CurvatureFrame {
-                contact: None,
-                ..frame
-            };
+            let options =
+                ForceOptions { axis: BaseAxis::Follicle, ..ForceOptions::new(ForceMethod::Model) };
+            let free = CurvatureFrame { contact: None, ..frame };
             let rows = forces_of(&scene, &[frame, free], &options);
             let marks = StrainMark::of_rows(&scene.whisker, &scene.pole, &rows).unwrap();
             let context = format!("{name} {push} {rows:?} {marks:?} {state:?}");
@@ -277,10 +241,7 @@ fn forces_of_the_model_have_the_strains_of_their_states() {
             let strain = marks[0].peak_strain.unwrap() / state.peak_strain;
             assert!((strain - 1.0).abs() < 1e-8, "{context}");
             assert_eq!(marks[0].yields, Some(state.peak_strain > 0.01), "{context}");
-            assert_eq!(
-                (marks[1].peak_strain, marks[1].yields),
-                (Some(0.0), Some(false))
-            );
+            assert_eq!((marks[1].peak_strain, marks[1].yields), (Some(0.0), Some(false)));
         }
     }
 }
@@ -294,50 +255,23 @@ fn frames_without_a_force_have_a_reason() {
     let with = |change: fn(&mut FrameContact)| {
         let mut contact = contact;
         change(&mut contact);
-        CurvatureFrame {
-            contact: Some(contact),
-            ..good
-        }
+        CurvatureFrame { contact: Some(contact), ..good }
     };
     let far = with(|contact| contact.contact_mm = [20.01, 0.0]);
     let behind = with(|contact| contact.contact_mm = [1.0, 0.0]);
     let unknown = with(|contact| contact.is_known = false);
     for method in [ForceMethod::Lever, ForceMethod::Model] {
-        assert_eq!(
-            force(&scene, &far, method).reason,
-            Some(NoForce::OutOfReach)
-        );
-        assert_eq!(
-            force(&scene, &unknown, method).reason,
-            Some(NoForce::Missing)
-        );
-        assert_eq!(
-            force(&scene, &behind, method).reason,
-            Some(NoForce::NoLever)
-        );
+        assert_eq!(force(&scene, &far, method).reason, Some(NoForce::OutOfReach));
+        assert_eq!(force(&scene, &unknown, method).reason, Some(NoForce::Missing));
+        assert_eq!(force(&scene, &behind, method).reason, Some(NoForce::NoLever));
     }
     // With the contact at the measured point the lever is 0.
-    let at_point = CurvatureFrame {
-        at_mm: Some(contact.contact_mm),
-        ..good
-    };
-    assert_eq!(
-        force(&scene, &at_point, ForceMethod::Lever).reason,
-        Some(NoForce::NoLever)
-    );
+    let at_point = CurvatureFrame { at_mm: Some(contact.contact_mm), ..good };
+    assert_eq!(force(&scene, &at_point, ForceMethod::Lever).reason, Some(NoForce::NoLever));
     // No stable state has ten times the curvature of one near the slip-off.
-    let sharp = CurvatureFrame {
-        curvature_per_mm: 10.0 * good.curvature_per_mm,
-        ..good
-    };
-    assert_eq!(
-        force(&scene, &sharp, ForceMethod::Model).reason,
-        Some(NoForce::NoState)
-    );
-    let free = CurvatureFrame {
-        contact: None,
-        ..good
-    };
+    let sharp = CurvatureFrame { curvature_per_mm: 10.0 * good.curvature_per_mm, ..good };
+    assert_eq!(force(&scene, &sharp, ForceMethod::Model).reason, Some(NoForce::NoState));
+    let free = CurvatureFrame { contact: None, ..good };
     for method in [ForceMethod::Lever, ForceMethod::Model] {
         let found = force(&scene, &free, method);
         assert_eq!((found.force_un, found.reason), (Some(0.0), None));
@@ -369,10 +303,7 @@ fn unstable_states_are_not_returned() {
         let push = part * branch.stable_end_deg();
         let (frame, _) = frame_of(&branch, push, false, 0.0).unwrap();
         let found = force(&scene, &frame, ForceMethod::Model);
-        assert!(
-            found.contact_off_mm.is_none_or(|off| off > 1e-3),
-            "{found:?}"
-        );
+        assert!(found.contact_off_mm.is_none_or(|off| off > 1e-3), "{found:?}");
         stable += usize::from(found.force_un.is_some());
     }
     assert!(stable > 0);
@@ -457,18 +388,9 @@ fn a_baseline_takes_away_an_offset() {
     let baseline = read.baseline(&scene.whisker, Some([0.0, 1.0])).unwrap();
     let estimated = baseline.unwrap();
     assert_eq!(estimated.count, 2);
-    assert!(
-        (estimated.mean_per_mm / offset - 1.0).abs() < 1e-12,
-        "{estimated:?}"
-    );
-    assert!(
-        (estimated.sd_per_mm / sd - 1.0).abs() < 1e-9,
-        "{estimated:?}"
-    );
-    let options = ForceOptions {
-        baseline,
-        ..ForceOptions::new(ForceMethod::Model)
-    };
+    assert!((estimated.mean_per_mm / offset - 1.0).abs() < 1e-12, "{estimated:?}");
+    assert!((estimated.sd_per_mm / sd - 1.0).abs() < 1e-9, "{estimated:?}");
+    let options = ForceOptions { baseline, ..ForceOptions::new(ForceMethod::Model) };
     let last = |options: &ForceOptions| forces_of(&scene, &read.frames, options)[2];
     let (with, without) = (last(&options), last(&ForceOptions::new(ForceMethod::Model)));
     let ratio = |force: FrameForce| force.force_un.unwrap() / state.force_un;
@@ -476,10 +398,7 @@ fn a_baseline_takes_away_an_offset() {
     assert!((ratio(without) - 1.0).abs() > 0.05, "{without:?}");
     assert_eq!(without.force_sd_un, None);
     let given = |sd| ForceOptions {
-        deviations: FrameDeviations {
-            curvature_per_mm: Some(sd),
-            ..FrameDeviations::default()
-        },
+        deviations: FrameDeviations { curvature_per_mm: Some(sd), ..FrameDeviations::default() },
         ..options
     };
     // The scatter counts as the scene's deviation would, which replaces it.
@@ -505,13 +424,8 @@ fn a_baseline_takes_away_an_offset() {
 
 /// The loads of a frame: size and parts of the force, and the moment.
 fn loads(force: &FrameForce) -> [f64; 4] {
-    [
-        force.force_un,
-        force.base_force_x_un,
-        force.base_force_y_un,
-        force.base_moment_nnm,
-    ]
-    .map(Option::unwrap)
+    [force.force_un, force.base_force_x_un, force.base_force_y_un, force.base_moment_nnm]
+        .map(Option::unwrap)
 }
 
 /// A frame whose numbers are off by `by`: curvature, both coordinates of the contact, and angle.
@@ -537,10 +451,7 @@ fn standard_deviations_are_those_of_random_frames() {
         let (frame, _) = frame(&scene, distance, push, part);
         for method in [ForceMethod::Lever, ForceMethod::Model] {
             let found = |deviations| {
-                let options = ForceOptions {
-                    deviations,
-                    ..ForceOptions::new(method)
-                };
+                let options = ForceOptions { deviations, ..ForceOptions::new(method) };
                 let found = forces_of(&scene, &[frame], &options)[0];
                 let sd = [
                     found.force_sd_un,
@@ -552,18 +463,9 @@ fn standard_deviations_are_those_of_random_frames() {
             };
             let none = FrameDeviations::default();
             let one = |group: usize| match group {
-                0 => FrameDeviations {
-                    curvature_per_mm: Some(sd[0]),
-                    ..none
-                },
-                1 => FrameDeviations {
-                    contact_mm: Some(sd[1]),
-                    ..none
-                },
-                _ => FrameDeviations {
-                    angle_deg: Some(sd[3]),
-                    ..none
-                },
+                0 => FrameDeviations { curvature_per_mm: Some(sd[0]), ..none },
+                1 => FrameDeviations { contact_mm: Some(sd[1]), ..none },
+                _ => FrameDeviations { angle_deg: Some(sd[3]), ..none },
             };
             let change = |number: usize| -> [f64; 4] {
                 let ends = [-0.01, 0.01].map(|part| {
@@ -600,10 +502,7 @@ fn standard_deviations_are_those_of_random_frames() {
             let drawn: Vec<[f64; 4]> = drawn.iter().map(loads).collect();
             for (i, found) in found(all).into_iter().enumerate() {
                 let mean = drawn.iter().map(|forces| forces[i]).sum::<f64>() / SAMPLES as f64;
-                let squares = drawn
-                    .iter()
-                    .map(|forces| (forces[i] - mean).powi(2))
-                    .sum::<f64>();
+                let squares = drawn.iter().map(|forces| (forces[i] - mean).powi(2)).sum::<f64>();
                 let wanted = (squares / (SAMPLES - 1) as f64).sqrt();
                 // The standard deviation of that of 500 samples is 3.2 %.
                 let context = format!("{name} {method:?} {i}: {found} {wanted}");

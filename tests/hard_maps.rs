@@ -30,10 +30,7 @@ const TIP: &str = "[grid]\npush_angle_deg = { from = -14, to = 14, count = 201 }
 fn at_the_tip_of_a_perfect_cone() {
     for pole in ["", "[pole]\nradius_mm = 0.25\n"] {
         certain(Some(0.0), &format!("{pole}{TIP}"));
-        certain(
-            Some(0.0),
-            &format!("[whisker.curvature]\nparabola_per_mm = 0.02\n{pole}{TIP}"),
-        );
+        certain(Some(0.0), &format!("[whisker.curvature]\nparabola_per_mm = 0.02\n{pole}{TIP}"));
     }
 }
 
@@ -61,10 +58,7 @@ fn bent_cylinders_whose_rows_leave_the_sheet_more_than_once() {
         }
     }
     let vertex = "[whisker.curvature]\nparabola_per_mm = 0.128\nvertex_mm = 9.42\n";
-    certain(
-        Some(30.0),
-        &format!("{vertex}[pole]\nradius_mm = 0.25\n{grid}"),
-    );
+    certain(Some(30.0), &format!("{vertex}[pole]\nradius_mm = 0.25\n{grid}"));
 }
 
 /// The stiffer the tip of a perfect cone is, the farther its folds are from those of other cones.

@@ -51,14 +51,7 @@ fn references() -> Vec<Reference> {
 #[test]
 fn curves_branches_and_courses_end_at_the_first_fold() {
     for reference in references() {
-        let Reference {
-            scene,
-            side,
-            distance_mm,
-            push_deg,
-            tolerance,
-            ..
-        } = &reference;
+        let Reference { scene, side, distance_mm, push_deg, tolerance, .. } = &reference;
         let (whisker, pole) = (&scene.whisker, &scene.pole);
         let end = curve(whisker, pole, *side, &[*distance_mm])[0];
         assert_eq!(end.kind, reference.kind);
@@ -68,15 +61,8 @@ fn curves_branches_and_courses_end_at_the_first_fold() {
         let branch = Branch::new(whisker, pole, *side, *distance_mm).unwrap();
         assert!(off(branch.stable_end_deg()) < *tolerance, "{push_deg}");
         let points = branch.points(200).unwrap();
-        assert!(
-            points
-                .iter()
-                .all(|point| !point.stable || point.det > -1e-9)
-        );
-        let last = points
-            .iter()
-            .find(|point| point.mark == Some(BranchMark::SlipOff))
-            .unwrap();
+        assert!(points.iter().all(|point| !point.stable || point.det > -1e-9));
+        let last = points.iter().find(|point| point.mark == Some(BranchMark::SlipOff)).unwrap();
         assert!(off(last.push_angle_deg) < *tolerance);
         // The push passes the pair of folds to other stable states, which end later.
         let snaps = end.snaps_deg.unwrap();
@@ -89,68 +75,37 @@ fn curves_branches_and_courses_end_at_the_first_fold() {
         let on_cb = rests[0].distance_of_pole(touch.length()) * whisker.length_mm;
         // Angle of the base at first touch: 0 on CB.
         let turn = (touch.to_angle()
-            - rests[0]
-                .pole_at_distance(on_cb / whisker.length_mm)
-                .to_angle())
+            - rests[0].pole_at_distance(on_cb / whisker.length_mm).to_angle())
         .to_degrees();
         let sign = side.sign();
         let angles = [turn - sign, turn + push_deg + sign];
         let course = AngleCourse::new(vec![0.0, 1.0], angles.to_vec()).unwrap();
         let found = whisk(whisker, pole, on_cb, &course).unwrap();
-        let slip = found
-            .events
-            .iter()
-            .find(|event| event.event == WhiskEventKind::SlipOff)
-            .unwrap();
+        let slip =
+            found.events.iter().find(|event| event.event == WhiskEventKind::SlipOff).unwrap();
         assert!(off(slip.push_angle_deg.unwrap()) < *tolerance, "{slip:?}");
-        assert!(
-            (slip.snaps_deg.unwrap() / snaps - 1.0).abs() < 1e-6,
-            "{slip:?}"
-        );
+        assert!((slip.snaps_deg.unwrap() / snaps - 1.0).abs() < 1e-6, "{slip:?}");
     }
 }
 
 #[test]
 fn maps_end_at_the_first_fold() {
-    for Reference {
-        scene,
-        side,
-        push_deg,
-        tolerance,
-        ..
-    } in references()
-    {
+    for Reference { scene, side, push_deg, tolerance, .. } in references() {
         let sign = side.sign();
         let pushes = [push_deg - sign * tolerance, push_deg + sign * tolerance];
-        let pushes = if sign > 0.0 {
-            pushes
-        } else {
-            [pushes[1], pushes[0]]
-        };
+        let pushes = if sign > 0.0 { pushes } else { [pushes[1], pushes[0]] };
         let scene = scene.to_builder().push_angle_deg(pushes).build().unwrap();
         let map = whiskmap::map(&scene, Options::default()).unwrap();
         let regime = |push: usize| map.regime(0, 0, push).unwrap();
-        let regimes = if sign > 0.0 {
-            [regime(0), regime(1)]
-        } else {
-            [regime(1), regime(0)]
-        };
-        assert_eq!(
-            regimes,
-            [Regime::Contact, Regime::Unreachable],
-            "{push_deg}"
-        );
+        let regimes = if sign > 0.0 { [regime(0), regime(1)] } else { [regime(1), regime(0)] };
+        assert_eq!(regimes, [Regime::Contact, Regime::Unreachable], "{push_deg}");
     }
 }
 
 /// Nearly cylindrical rods of the families whose detachment curves jump: strong parabolas of either sign, spirals, traced shapes with
 /// several bends and measured radii with waists; half of them with friction up to 1.
 fn rod(random: &mut Random, family: usize) -> (Rod, Side) {
-    let side = if random.unit() < 0.5 {
-        Side::Cb
-    } else {
-        Side::Cf
-    };
+    let side = if random.unit() < 0.5 { Side::Cb } else { Side::Cf };
     let friction = (2.0 * random.unit() - 1.0).max(0.0);
     let mut rod = Rod {
         taper: random.between(0.0, 0.3),
@@ -211,10 +166,7 @@ fn branches_agree_with_curves_on_random_rows() {
             );
             for pair in found.nodes.windows(2) {
                 let is_last = std::ptr::eq(&pair[1], last) && found.end == Some(Edge::Fold);
-                assert!(
-                    is_last || pair[1].full.map.det() > 0.0,
-                    "{rod:?} {side:?} {distance}"
-                );
+                assert!(is_last || pair[1].full.map.det() > 0.0, "{rod:?} {side:?} {distance}");
                 let rise = side.sign() * (pair[1].signed_push - pair[0].signed_push);
                 assert!(rise > 0.0, "{rod:?} {side:?} {distance} {rise:e}");
             }
@@ -282,27 +234,9 @@ fn pushes_end_before_gaps_shorter_than_a_step() {
         0.0,
     );
     let cases = [
-        (
-            waist,
-            Side::Cb,
-            0.308_197_230_046_580_3,
-            Edge::Fold,
-            5.618_329_609_858,
-        ),
-        (
-            step,
-            Side::Cb,
-            0.350_664_723_819_827_4,
-            Edge::Tip,
-            10.122_996_071_435,
-        ),
-        (
-            traced(),
-            Side::Cf,
-            0.110_074_426_2,
-            Edge::Fold,
-            5.123_694_933_287,
-        ),
+        (waist, Side::Cb, 0.308_197_230_046_580_3, Edge::Fold, 5.618_329_609_858),
+        (step, Side::Cb, 0.350_664_723_819_827_4, Edge::Tip, 10.122_996_071_435),
+        (traced(), Side::Cf, 0.110_074_426_2, Edge::Fold, 5.123_694_933_287),
     ];
     for (rod, side, distance, edge, end) in cases {
         let found = Sheet::new(Method::fine(), &rod, side, &[distance]).crossings[0][0];
@@ -323,11 +257,6 @@ fn a_contact_that_jams_at_first_touch_has_no_end() {
         assert!(level.touch().full.map.det() < 0.0, "{distance}");
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cf, &[distance]);
         assert!(sheet.touches(0));
-        assert!(
-            sheet.crossings[0]
-                .first()
-                .is_none_or(|end| end.is_unknown()),
-            "{distance}"
-        );
+        assert!(sheet.crossings[0].first().is_none_or(|end| end.is_unknown()), "{distance}");
     }
 }

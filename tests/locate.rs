@@ -8,12 +8,8 @@ use whiskmap::scene::{Curvature, EulerSpiral, Pole, Whisker};
 use whiskmap::trace::{Branch, BranchPoint};
 
 /// Each two of moment and forces, and all three.
-const MEASURED: [[bool; 3]; 4] = [
-    [true, true, false],
-    [true, false, true],
-    [false, true, true],
-    [true; 3],
-];
+const MEASURED: [[bool; 3]; 4] =
+    [[true, true, false], [true, false, true], [false, true, true], [true; 3]];
 
 /// The numbers of a state that are `measured`.
 fn reading(state: &BranchPoint, measured: [bool; 3]) -> BaseReading {
@@ -117,12 +113,7 @@ fn states_of_random_whiskers_come_back() {
         let (whisker, pole) = random_whisker(&mut random);
         let distances = [random.between(0.15, 0.5), random.between(0.5, 0.93)];
         let states = states(&whisker, &pole, &distances, &[0.02, 0.3, 0.7, 0.98]);
-        check_round_trips(
-            &format!("{i} {whisker:?} {pole:?}"),
-            &whisker,
-            &pole,
-            &states,
-        );
+        check_round_trips(&format!("{i} {whisker:?} {pole:?}"), &whisker, &pole, &states);
     }
 }
 
@@ -134,15 +125,10 @@ fn states_in_soft_follicles_come_back() {
     for i in 0..12 {
         let (whisker, pole) = random_whisker(&mut random);
         let stiffness = 10f64.powf(random.between(2.3, 3.2));
-        let whisker = Whisker {
-            follicle_stiffness_nnm_per_rad: Some(stiffness),
-            ..whisker
-        };
+        let whisker = Whisker { follicle_stiffness_nnm_per_rad: Some(stiffness), ..whisker };
         let distances = [random.between(0.15, 0.5), random.between(0.5, 0.93)];
         let states = states(&whisker, &pole, &distances, &[0.02, 0.3, 0.7, 0.98]);
-        let turns = states
-            .iter()
-            .map(|state| state.base_moment_nnm.abs() / stiffness);
+        let turns = states.iter().map(|state| state.base_moment_nnm.abs() / stiffness);
         turned = turns.fold(turned, f64::max);
         let name = format!("{i} {whisker:?} {pole:?}");
         check_round_trips(&name, &whisker, &pole, &states);
@@ -184,11 +170,7 @@ fn several_states_have_the_same_numbers() {
             let wanted = &states[row.reading - 1];
             let size = wanted.force_un.abs();
             for (i, [found, other, size]) in [
-                [
-                    state.base_moment_nnm,
-                    wanted.base_moment_nnm,
-                    size * whisker.length_mm,
-                ],
+                [state.base_moment_nnm, wanted.base_moment_nnm, size * whisker.length_mm],
                 [state.base_force_x_un, wanted.base_force_x_un, size],
                 [state.base_force_y_un, wanted.base_force_y_un, size],
             ]
@@ -215,10 +197,7 @@ fn moment_and_axial_force_of_a_cylinder_determine_no_contact() {
         ..random_whisker(&mut Random::new(1)).0
     };
     let circle = Whisker {
-        euler_spiral: Some(EulerSpiral {
-            per_mm: 0.04,
-            per_mm2: 0.0,
-        }),
+        euler_spiral: Some(EulerSpiral { per_mm: 0.04, per_mm2: 0.0 }),
         ..straight.clone()
     };
     let pole = Pole::smooth(0.2);
@@ -261,21 +240,11 @@ fn states_of_nearly_straight_cylinders_come_back() {
         let pole = Pole::smooth(random.between(0.0, 0.5));
         let distances = [random.between(0.15, 0.5), random.between(0.5, 0.93)];
         let states = states(&whisker, &pole, &distances, &[0.05, 0.4, 0.95]);
-        check_round_trips(
-            &format!("{i} {whisker:?} {pole:?}"),
-            &whisker,
-            &pole,
-            &states,
-        );
-        let readings: Vec<BaseReading> = states
-            .iter()
-            .map(|state| reading(state, [true, true, false]))
-            .collect();
+        check_round_trips(&format!("{i} {whisker:?} {pole:?}"), &whisker, &pole, &states);
+        let readings: Vec<BaseReading> =
+            states.iter().map(|state| reading(state, [true, true, false])).collect();
         let rows = Locator::new(&whisker, &pole).locate(&readings, None);
-        most = rows
-            .iter()
-            .filter_map(|row| row.condition)
-            .fold(most, f64::max);
+        most = rows.iter().filter_map(|row| row.condition).fold(most, f64::max);
     }
     assert!(most > 1e5, "{most:e}");
 }
@@ -287,16 +256,11 @@ fn states_that_differ_by_rounding_are_one() {
     let (mut most, mut found, mut all): (f64, usize, usize) = (0.0, 0, 0);
     for parabola_per_mm in [1e-4, 3e-4] {
         let whisker = Whisker {
-            curvature: Some(Curvature {
-                parabola_per_mm,
-                vertex_mm: 0.0,
-            }),
+            curvature: Some(Curvature { parabola_per_mm, vertex_mm: 0.0 }),
             ..Whisker::cone(20.0, [30.0, 30.0], 3.0)
         };
         let states = states(&whisker, &pole, &[0.3, 0.6], &[0.05, 0.2, 0.4, 0.7, 0.95]);
-        let readings = states
-            .iter()
-            .map(|state| reading(state, [true, true, false]));
+        let readings = states.iter().map(|state| reading(state, [true, true, false]));
         let readings: Vec<BaseReading> = readings.collect();
         let rows = Locator::new(&whisker, &pole).locate(&readings, None);
         for rows in rows.chunk_by(|row, next| row.reading == next.reading) {
@@ -309,10 +273,7 @@ fn states_that_differ_by_rounding_are_one() {
                 let apart = arcs.ln().abs().max(forces.ln().abs());
                 assert!(apart > (0.5e-11 * condition).min(0.05), "{row:?} {next:?}");
             }
-            most = rows
-                .iter()
-                .filter_map(|row| row.condition)
-                .fold(most, f64::max);
+            most = rows.iter().filter_map(|row| row.condition).fold(most, f64::max);
         }
     }
     assert!(most > 1e9, "{most:e}");
@@ -335,9 +296,7 @@ fn the_condition_grows_toward_a_singular_line() {
         let state = states(&whisker, &pole, &[0.6], &[0.5])[1];
         let rows =
             Locator::new(&whisker, &pole).locate(&[reading(&state, [true, true, false])], None);
-        let nearest = rows
-            .iter()
-            .min_by(|a, b| off(a, &state).total_cmp(&off(b, &state)));
+        let nearest = rows.iter().min_by(|a, b| off(a, &state).total_cmp(&off(b, &state)));
         nearest.unwrap().condition.unwrap()
     };
     let conditions = [20.0, 36.0, 39.6].map(condition);
@@ -351,28 +310,18 @@ fn deviations_are_first_order_errors() {
     let scene = shipped::scene("cone");
     let (whisker, pole) = (&scene.whisker, &scene.pole);
     let locator = Locator::new(whisker, pole);
-    let sensor = SensorDeviations {
-        moment_nnm: 1.0,
-        force_un: 0.3,
-    };
+    let sensor = SensorDeviations { moment_nnm: 1.0, force_un: 0.3 };
     for state in states(whisker, pole, &[0.6], &[0.4, 0.8]) {
         for measured in &MEASURED[..3] {
             let wanted = reading(&state, *measured);
             let values = |reading: &BaseReading| {
                 let rows = locator.locate(std::slice::from_ref(reading), Some(sensor));
-                let nearest = rows
-                    .iter()
-                    .min_by(|a, b| off(a, &state).total_cmp(&off(b, &state)));
+                let nearest = rows.iter().min_by(|a, b| off(a, &state).total_cmp(&off(b, &state)));
                 *nearest.unwrap()
             };
             let of = |row: &LocatedState| {
-                [
-                    row.arc_length_mm,
-                    row.distance_mm,
-                    row.push_angle_deg,
-                    row.force_un,
-                ]
-                .map(Option::unwrap)
+                [row.arc_length_mm, row.distance_mm, row.push_angle_deg, row.force_un]
+                    .map(Option::unwrap)
             };
             let mut squares = [0.0; 4];
             let step = 1e-5;
@@ -395,19 +344,12 @@ fn deviations_are_first_order_errors() {
                 }
             }
             let row = values(&wanted);
-            let deviations = [
-                row.arc_length_sd_mm,
-                row.distance_sd_mm,
-                row.push_angle_sd_deg,
-                row.force_sd_un,
-            ];
+            let deviations =
+                [row.arc_length_sd_mm, row.distance_sd_mm, row.push_angle_sd_deg, row.force_sd_un];
             for (deviation, square) in deviations.into_iter().zip(squares) {
                 let (deviation, wanted) = (deviation.unwrap(), f64::sqrt(square));
                 // The truncation of the differences.
-                assert!(
-                    (deviation / wanted - 1.0).abs() < 1e-5,
-                    "{deviation} {wanted} {row:?}"
-                );
+                assert!((deviation / wanted - 1.0).abs() < 1e-5, "{deviation} {wanted} {row:?}");
             }
         }
     }
@@ -420,20 +362,10 @@ fn readings_without_a_state_have_a_reason() {
     let state = states(&scene.whisker, &scene.pole, &[0.6], &[0.5])[1];
     let good = reading(&state, [true, false, true]);
     let readings = [
-        BaseReading {
-            force_y_un: None,
-            ..good
-        },
-        BaseReading {
-            moment_nnm: Some(0.0),
-            force_y_un: Some(0.0),
-            ..good
-        },
+        BaseReading { force_y_un: None, ..good },
+        BaseReading { moment_nnm: Some(0.0), force_y_un: Some(0.0), ..good },
         // No whisker bends its base to the left by a force to the right at every contact.
-        BaseReading {
-            moment_nnm: good.moment_nnm.map(|moment| -moment),
-            ..good
-        },
+        BaseReading { moment_nnm: good.moment_nnm.map(|moment| -moment), ..good },
         good,
     ];
     let rows = locator.locate(&readings, None);
@@ -457,16 +389,10 @@ fn three_numbers_give_the_nearest_state() {
     noisy.force_x_un = noisy.force_x_un.map(|force| force + 0.02 * state.force_un);
     let none = locator.locate(&[noisy], None)[0];
     assert_eq!(none.reason, Some(NoLocation::NoState));
-    let sensor = |force_un: f64| SensorDeviations {
-        moment_nnm: 1e-3,
-        force_un,
-    };
+    let sensor = |force_un: f64| SensorDeviations { moment_nnm: 1e-3, force_un };
     let [loose, tight] = [0.02, 0.001].map(|part| sensor(part * state.force_un));
     let found = locator.locate(&[noisy], Some(loose))[0];
-    assert!(
-        off(&found, &state) < 0.1 && found.misfit.unwrap() > 0.01,
-        "{found:?}"
-    );
+    assert!(off(&found, &state) < 0.1 && found.misfit.unwrap() > 0.01, "{found:?}");
     let found = locator.locate(&[noisy], Some(tight))[0];
     assert_eq!(found.reason, Some(NoLocation::NoState));
 }
@@ -476,16 +402,10 @@ fn the_laboratory_is_turned_by_the_angle_of_the_base() {
     let scene = shipped::scene("cone");
     let locator = Locator::new(&scene.whisker, &scene.pole);
     let state = states(&scene.whisker, &scene.pole, &[0.6], &[0.5])[1];
-    let turned = BaseReading {
-        angle_deg: Some(90.0),
-        ..reading(&state, [true, false, true])
-    };
+    let turned = BaseReading { angle_deg: Some(90.0), ..reading(&state, [true, false, true]) };
     let row = locator.locate(&[turned], None)[0];
     let near = |found: Option<f64>, other: Option<f64>, sign: f64| {
-        assert!(
-            (found.unwrap() - sign * other.unwrap()).abs() < 1e-12,
-            "{row:?}"
-        );
+        assert!((found.unwrap() - sign * other.unwrap()).abs() < 1e-12, "{row:?}");
     };
     near(row.lab_contact_x_mm, row.contact_y_mm, -1.0);
     near(row.lab_contact_y_mm, row.contact_x_mm, 1.0);

@@ -26,12 +26,7 @@ fn shipped_scenes_have_no_doubtful_cell() {
         assert_eq!(summary.disagreements, 0, "{}", scene.title);
         assert_eq!(summary.unresolved(), 0, "{}", scene.title);
         assert!(summary.refined * 4 > summary.cells(), "{}", scene.title);
-        assert!(
-            summary.worst_residual <= TOLERANCE,
-            "{}: {}",
-            scene.title,
-            summary.worst_residual
-        );
+        assert!(summary.worst_residual <= TOLERANCE, "{}: {}", scene.title, summary.worst_residual);
         for panel in panels {
             for (cell, regime) in panel.regime.iter().enumerate() {
                 let contact = is_contact(*regime);
@@ -79,11 +74,7 @@ fn append(panel: &mut Panel, more: &Panel) {
 fn bands_are_the_rows_of_a_panel() {
     for (name, is_spectral) in [("cone", false), ("cone", true), ("robot", false)] {
         let mut text = shipped::scene(name).to_toml();
-        text += if name == "robot" {
-            "[contact]\nfriction = 0.3\n"
-        } else {
-            ""
-        };
+        text += if name == "robot" { "[contact]\nfriction = 0.3\n" } else { "" };
         let scene = Scene::parse(&text, name).unwrap().thinned(64, 1);
         let mut spectral = Spectral::default();
         let (summary, mut whole) = compute(&scene, is_spectral.then_some(&mut spectral as _));
@@ -98,11 +89,7 @@ fn bands_are_the_rows_of_a_panel() {
                 append(&mut joined, panel);
                 bands.push(panel.regime.len() / scene.grid.push_angle_deg.len());
                 // The next band in this memory must overwrite all of it.
-                let codes = [
-                    &mut panel.regime,
-                    &mut panel.status,
-                    &mut panel.newton_steps,
-                ];
+                let codes = [&mut panel.regime, &mut panel.status, &mut panel.newton_steps];
                 codes.into_iter().for_each(|codes| codes.fill(9));
                 let numbers = [&mut panel.residual, &mut panel.margin_deg];
                 let numbers = numbers.into_iter().chain(&mut panel.state);
@@ -138,16 +125,8 @@ fn push_and_margin_add_up() {
 
 /// One row of `scene`.
 fn row(scene: &Scene, push_angle_deg: &[f64], distance_mm: f64) -> Panel {
-    let scene = scene
-        .to_builder()
-        .push_angle_deg(push_angle_deg)
-        .build()
-        .unwrap();
-    let scene = scene
-        .to_builder()
-        .distance_mm([distance_mm])
-        .build()
-        .unwrap();
+    let scene = scene.to_builder().push_angle_deg(push_angle_deg).build().unwrap();
+    let scene = scene.to_builder().distance_mm([distance_mm]).build().unwrap();
     compute(&scene, None).1.remove(0)
 }
 
@@ -158,10 +137,7 @@ fn fig2_row(push_angle_deg: &[f64]) -> Panel {
 }
 
 fn channel<'a>(panel: &'a Panel, name: &str) -> &'a [f32] {
-    &panel.state[STATE_CHANNELS
-        .iter()
-        .position(|channel| *channel == name)
-        .unwrap()]
+    &panel.state[STATE_CHANNELS.iter().position(|channel| *channel == name).unwrap()]
 }
 
 /// A hair before slip-off (24.9168 and 15.60793 degrees) the forces are those of the fold to 1 %: states near
@@ -176,10 +152,7 @@ fn forces_have_their_units_and_signs() {
     ] {
         let values = channel(&panel, name);
         for (value, wanted) in values.iter().zip([cf, cb]) {
-            assert!(
-                (value / wanted - 1.0_f32).abs() < 0.01,
-                "{name}: {values:?}"
-            );
+            assert!((value / wanted - 1.0_f32).abs() < 0.01, "{name}: {values:?}");
         }
     }
 }
@@ -252,11 +225,11 @@ fn progress_is_complete_and_cancelling_ends_a_map() {
 fn channels_have_the_names_of_files() {
     let names = Channel::ALL.map(Channel::name);
     assert_eq!(names[..STATE_CHANNELS.len()], STATE_CHANNELS);
-    assert!(names.iter().all(|name| {
-        whiskmap::Channels::STANDARD
-            .with("peak_strain")
-            .contains(name)
-    }));
+    assert!(
+        names
+            .iter()
+            .all(|name| { whiskmap::Channels::STANDARD.with("peak_strain").contains(name) })
+    );
     let scene = shipped::scene("cone").thinned(8, 1);
     let map = whiskmap::map(&scene, Options::default()).unwrap();
     for (channel, values) in Channel::ALL.into_iter().zip(&map.panels[0].state) {

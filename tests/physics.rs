@@ -11,12 +11,7 @@ use whiskmap::sheet::{Crossing, Edge, Sheet};
 /// The detachment of `whisker` at `distance_mm` from a pole: push angle in degrees, signed, and the crossing.
 fn detachment(whisker: &Whisker, pole: &Pole, side: Side, distance_mm: f64) -> (f64, Crossing) {
     let rod = whisker.rod(pole, side);
-    let sheet = Sheet::new(
-        Method::fine(),
-        &rod,
-        side,
-        &[distance_mm / whisker.length_mm],
-    );
+    let sheet = Sheet::new(Method::fine(), &rod, side, &[distance_mm / whisker.length_mm]);
     let crossing = sheet.crossings[0][0];
     let boundary = RowBoundary::new(sheet.touches(0), &sheet.crossings[0]);
     let span: &PushSpan = boundary.detachment().unwrap();
@@ -32,10 +27,7 @@ fn whisker(
     vertex_mm: f64,
 ) -> Whisker {
     Whisker {
-        curvature: (a > 0.0).then_some(Curvature {
-            parabola_per_mm: a,
-            vertex_mm,
-        }),
+        curvature: (a > 0.0).then_some(Curvature { parabola_per_mm: a, vertex_mm }),
         ..Whisker::cone(length_mm, [base_radius_um, tip_radius_um], 3.0)
     }
 }
@@ -60,18 +52,10 @@ fn the_reference_is_reproduced() {
             number("vertex_mm"),
         );
         whisker.arc_stretch = number("projection");
-        let side = if text("side") == "CB" {
-            Side::Cb
-        } else {
-            Side::Cf
-        };
+        let side = if text("side") == "CB" { Side::Cb } else { Side::Cf };
         let pole = Pole::smooth(number("pole_radius_mm"));
         let (push, crossing) = detachment(&whisker, &pole, side, number("distance_mm"));
-        let kind = if crossing.edge == Edge::Fold {
-            "slip-off"
-        } else {
-            "pull-off"
-        };
+        let kind = if crossing.edge == Edge::Fold { "slip-off" } else { "pull-off" };
         assert_eq!(kind, text("kind"), "{line}");
         // The file has 9 decimals.
         let miss = (push - number("push_angle_deg")).abs();
@@ -109,10 +93,7 @@ fn straight_whiskers_are_symmetric() {
                 let whisker = whisker(20.0, 30.0, tip_um, 0.0, 0.0);
                 let (cb, at_cb) = detachment(&whisker, &Pole::smooth(pole_mm), Side::Cb, distance);
                 let (cf, at_cf) = detachment(&whisker, &Pole::smooth(pole_mm), Side::Cf, distance);
-                assert_eq!(
-                    cb, -cf,
-                    "{tip_um} {pole_mm} {distance}: {at_cb:?} {at_cf:?}"
-                );
+                assert_eq!(cb, -cf, "{tip_um} {pole_mm} {distance}: {at_cb:?} {at_cf:?}");
                 assert_eq!((at_cb.tau, at_cb.load), (at_cf.tau, -at_cf.load));
             }
         }
@@ -122,12 +103,8 @@ fn straight_whiskers_are_symmetric() {
 /// Scaling every length scales nothing that is an angle; Young's modulus neither.
 #[test]
 fn angles_do_not_depend_on_units() {
-    let (push, _) = detachment(
-        &whisker(20.0, 30.0, 1.5, 0.02, 0.0),
-        &Pole::smooth(0.25),
-        Side::Cb,
-        14.0,
-    );
+    let (push, _) =
+        detachment(&whisker(20.0, 30.0, 1.5, 0.02, 0.0), &Pole::smooth(0.25), Side::Cb, 14.0);
     for scale in [5e-3, 50.0] {
         let mut scaled = whisker(20.0 * scale, 30.0 * scale, 1.5 * scale, 0.02 / scale, 0.0);
         scaled.youngs_modulus_gpa = 1.0;
@@ -145,10 +122,7 @@ fn a_modulus_gradient_shifts_the_slip() {
         let (push, crossing) =
             detachment(&cone, &Pole::smooth(0.25), Side::Cb, 15.660_459_763_365_8);
         assert_eq!(crossing.edge, Edge::Fold);
-        assert!(
-            (push - expected).abs() < 5e-3,
-            "{push}, expected {expected}"
-        );
+        assert!((push - expected).abs() < 5e-3, "{push}, expected {expected}");
     }
 }
 
@@ -164,12 +138,8 @@ fn effects_vanish_to_the_first_order() {
     let none = push(&|_, _| {});
     let effects: [(&str, &dyn Fn(f64) -> f64); 3] = [
         ("friction", &|size| push(&|_, pole| pole.friction = size)),
-        ("gradient", &|size| {
-            push(&|w, _| w.modulus_tip_to_base = 1.0 + size)
-        }),
-        ("projection", &|size| {
-            push(&|w, _| w.arc_stretch = 1.0 + size)
-        }),
+        ("gradient", &|size| push(&|w, _| w.modulus_tip_to_base = 1.0 + size)),
+        ("projection", &|size| push(&|w, _| w.arc_stretch = 1.0 + size)),
     ];
     for (name, effect) in effects {
         let ratio = (effect(1e-3) - none) / (effect(1e-4) - none);

@@ -64,16 +64,8 @@ fn kept(push_angles: &str, distances: &str, more: &str) -> (usize, usize) {
     let is_asked = scene.grid.push_angle_deg.len() > 100;
     assert_eq!(engine.calls, if is_asked { plan.engine_calls } else { 0 });
     assert_eq!(summary.cells(), plan.cells as u64);
-    let EngineCells {
-        missed,
-        without_row,
-        ..
-    } = summary.engine_cells;
-    let of_cpu = EngineCells {
-        missed,
-        without_row,
-        ..EngineCells::default()
-    };
+    let EngineCells { missed, without_row, .. } = summary.engine_cells;
+    let of_cpu = EngineCells { missed, without_row, ..EngineCells::default() };
     assert_eq!(summary.engine_cells, of_cpu);
     let groups = plan.whiskers.div_ceil(plan.panels_at_once);
     (groups, plan.engine_calls)
@@ -95,15 +87,9 @@ fn memory_is_that_of_the_channels_there_are() {
     let channels = STATE_CHANNELS.len() as u64 + 5;
     assert_eq!(bytes(300, "") - bytes(100, ""), 400 * (4 * channels + 32));
     let sweep = "friction = [0, 0.1, 0.2]\n";
-    assert_eq!(
-        bytes(300, sweep) - bytes(100, sweep),
-        3 * 400 * (4 * channels + 32)
-    );
+    assert_eq!(bytes(300, sweep) - bytes(100, sweep), 3 * 400 * (4 * channels + 32));
     let sweep = "friction = { from = 0, to = 1, count = 70 }\n";
-    assert_eq!(
-        bytes(300, sweep) - bytes(100, sweep),
-        400 * (70 * 4 * channels + 64 * 32)
-    );
+    assert_eq!(bytes(300, sweep) - bytes(100, sweep), 400 * (70 * 4 * channels + 64 * 32));
 }
 
 #[test]
@@ -163,21 +149,13 @@ fn nothing_is_on_that_no_line_asks_for() {
 #[test]
 fn every_line_turns_its_own_effect_on() {
     let lines = [
-        (
-            "whisker.curvature.parabola_per_mm = 0.02",
-            2,
-            "parabola_per_mm 0.02",
-        ),
+        ("whisker.curvature.parabola_per_mm = 0.02", 2, "parabola_per_mm 0.02"),
         (
             "whisker.curvature.euler_spiral = { per_mm = 0.02, per_mm2 = -0.001 }",
             3,
             "per_mm 0.02, per_mm2 -0.001",
         ),
-        (
-            "whisker.modulus_gradient.tip_to_base = 1.5",
-            5,
-            "tip_to_base 1.5",
-        ),
+        ("whisker.modulus_gradient.tip_to_base = 1.5", 5, "tip_to_base 1.5"),
         (
             "whisker.rest = { degree = 0, points = [[0, 0], [5, 0], [10, 0], [20, 0]] }",
             4,
@@ -185,16 +163,8 @@ fn every_line_turns_its_own_effect_on() {
         ),
         ("pole.radius_mm = 0.25", 6, "radius_mm 0.25"),
         ("contact.friction = 0.2", 7, "friction 0.2"),
-        (
-            "whisker.follicle.stiffness_nnm_per_rad = 5000",
-            8,
-            "stiffness_nnm_per_rad 5000",
-        ),
-        (
-            "whisker.projection.arc_stretch = 1.03",
-            9,
-            "arc_stretch 1.03",
-        ),
+        ("whisker.follicle.stiffness_nnm_per_rad = 5000", 8, "stiffness_nnm_per_rad 5000"),
+        ("whisker.projection.arc_stretch = 1.03", 9, "arc_stretch 1.03"),
     ];
     let bare = listed(1.5, "");
     assert_eq!(bare[0], "+taper: tip_radius_um 1.5 < base_radius_um 30");
@@ -209,25 +179,16 @@ fn every_line_turns_its_own_effect_on() {
 #[test]
 fn axes_stand_in_for_the_whiskers_own_values() {
     let axis = |line| listed(1.5, line);
-    assert_eq!(
-        axis("grid.taper = [0, 0.5]")[0],
-        "+taper: grid.taper 0 to 0.5"
-    );
+    assert_eq!(axis("grid.taper = [0, 0.5]")[0], "+taper: grid.taper 0 to 0.5");
     assert_eq!(axis("grid.taper = [0]")[0], "-taper: grid.taper 0");
     let curvature = "+curvature: grid.curvature_per_mm 0 to 0.04";
-    assert_eq!(
-        axis("grid.curvature_per_mm = [0, 0.01, 0.04]")[2],
-        curvature
-    );
+    assert_eq!(axis("grid.curvature_per_mm = [0, 0.01, 0.04]")[2], curvature);
 }
 
 #[test]
 fn a_projected_cylinder_is_a_cylinder() {
     let projection = "-projection: arc_stretch 1.03 does nothing without taper or modulus gradient";
-    assert_eq!(
-        listed(30.0, "whisker.projection.arc_stretch = 1.03")[9],
-        projection
-    );
+    assert_eq!(listed(30.0, "whisker.projection.arc_stretch = 1.03")[9], projection);
 }
 
 /// A sweep of the shipped scene with so many values on each of its two axes, and so many lines in its panels.
@@ -283,8 +244,5 @@ fn an_error_of_the_caller_ends_the_run() {
             }
             Ok(())
         });
-    assert_eq!(
-        (stopped.unwrap_err().to_string().as_str(), seen),
-        ("enough", 3)
-    );
+    assert_eq!((stopped.unwrap_err().to_string().as_str(), seen), ("enough", 3));
 }

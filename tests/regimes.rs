@@ -1,9 +1,5 @@
 //! Classification of cells by the boundary of their row and, at the reach of the resting whisker, by its shape at rest.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test fails by panicking"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use crate::compute;
 
@@ -20,15 +16,7 @@ use whiskmap::trace::{Detachment, DetachmentKind, curve_at};
 const LENGTH_MM: f64 = 20.0;
 
 /// Distances in whisker lengths: well within reach, a tenth of a micrometre from it, at it but for rounding, and beyond.
-const DISTANCES: [f64; 7] = [
-    0.9,
-    1.0 - 5e-9,
-    1.0 - 1e-15,
-    1.0,
-    1.0 + 1e-15,
-    1.0 + 5e-9,
-    1.01,
-];
+const DISTANCES: [f64; 7] = [0.9, 1.0 - 5e-9, 1.0 - 1e-15, 1.0, 1.0 + 1e-15, 1.0 + 5e-9, 1.01];
 
 /// Number of distances that a whisker reaches. A perfect cone ends a billionth of its length before its point.
 const REACHED: usize = 5;
@@ -58,11 +46,7 @@ fn the_shape_at_rest_decides_at_the_straight_length() {
             plan.method.resolution = resolution;
             let (summary, panels) = compute_as(&scene, &plan, None);
             let case = format!("pole {pole}, friction {friction}, {resolution:?}");
-            assert_eq!(
-                (summary.unresolved(), summary.disagreements),
-                (0, 0),
-                "{case}"
-            );
+            assert_eq!((summary.unresolved(), summary.disagreements), (0, 0), "{case}");
             let regimes: Vec<Vec<u32>> = panels.into_iter().map(|panel| panel.regime).collect();
             for (SweptWhisker { whisker, .. }, regimes) in scene.whiskers().flatten().zip(&regimes)
             {
@@ -88,13 +72,7 @@ fn agrees_with_its_curve(
     case: &str,
 ) {
     let pushes = &scene.grid.push_angle_deg;
-    let ends = curve_at(
-        resolution,
-        whisker,
-        &scene.pole,
-        side,
-        &scene.grid.distance_mm,
-    );
+    let ends = curve_at(resolution, whisker, &scene.pole, side, &scene.grid.distance_mm);
     for (end, regimes) in ends.iter().zip(regimes.chunks(pushes.len())) {
         let case = format!("{case}: {end:?}");
         let (beyond, at) = match (end.kind, end.push_angle_deg) {
@@ -105,26 +83,15 @@ fn agrees_with_its_curve(
         };
         for (push, regime) in pushes.iter().zip(regimes) {
             if Side::of_push(*push) == side {
-                let expected = if push.abs() <= at {
-                    Regime::Contact
-                } else {
-                    beyond
-                };
+                let expected = if push.abs() <= at { Regime::Contact } else { beyond };
                 // A thick pole beyond the reach can be touched, but not by a push from rest.
                 let entered = beyond == Regime::OutOfReach && *regime == Regime::Unreachable.code();
-                assert!(
-                    entered || *regime == expected.code(),
-                    "{case}, push {push}: {regime}"
-                );
+                assert!(entered || *regime == expected.code(), "{case}, push {push}: {regime}");
             }
         }
     }
     let reached = |end: &Detachment| end.kind != DetachmentKind::OutOfReach;
-    let count = if whisker.taper() == 1.0 {
-        REACHED_BY_A_POINT
-    } else {
-        REACHED
-    };
+    let count = if whisker.taper() == 1.0 { REACHED_BY_A_POINT } else { REACHED };
     assert!(ends[..count].iter().all(reached), "{case}");
     assert!(!ends[count..].iter().any(reached), "{case}");
     let kind = ends[count - 1].kind;
@@ -132,70 +99,37 @@ fn agrees_with_its_curve(
 }
 
 fn crossing(edge: Edge, push: f64) -> Crossing {
-    Crossing {
-        edge,
-        tau: 1.0,
-        load: 1.0,
-        push,
-        residual: 0.0,
-        slope: 0.0,
-    }
+    Crossing { edge, tau: 1.0, load: 1.0, push, residual: 0.0, slope: 0.0 }
 }
 
 #[test]
 fn a_row_that_touches_ends_at_its_edge() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
-    assert_eq!(
-        row.classify(0.3, Outcome::Solved),
-        (Regime::Contact, Status::Solved)
-    );
-    assert_eq!(
-        row.classify(0.6, Outcome::OffSheet),
-        (Regime::SlipOff, Status::Outside)
-    );
+    assert_eq!(row.classify(0.3, Outcome::Solved), (Regime::Contact, Status::Solved));
+    assert_eq!(row.classify(0.6, Outcome::OffSheet), (Regime::SlipOff, Status::Outside));
     let row = RowBoundary::new(true, &[crossing(Edge::Tip, 0.5)]);
-    assert_eq!(
-        row.classify(0.6, Outcome::BeyondTip),
-        (Regime::PullOff, Status::BeyondTip)
-    );
+    assert_eq!(row.classify(0.6, Outcome::BeyondTip), (Regime::PullOff, Status::BeyondTip));
 }
 
 #[test]
 fn a_row_beyond_reach_is_entered_over_an_edge() {
-    let row = RowBoundary::new(
-        false,
-        &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)],
-    );
-    assert_eq!(
-        row.classify(0.3, Outcome::Solved),
-        (Regime::Unreachable, Status::Solved)
-    );
+    let row = RowBoundary::new(false, &[crossing(Edge::Tip, 0.2), crossing(Edge::Fold, 0.5)]);
+    assert_eq!(row.classify(0.3, Outcome::Solved), (Regime::Unreachable, Status::Solved));
     for push in [0.1, 0.6] {
-        assert_eq!(
-            row.classify(push, Outcome::OffSheet),
-            (Regime::OutOfReach, Status::Outside)
-        );
+        assert_eq!(row.classify(push, Outcome::OffSheet), (Regime::OutOfReach, Status::Outside));
     }
 }
 
 #[test]
 fn contradictions_are_unresolved() {
     let row = RowBoundary::new(true, &[crossing(Edge::Fold, 0.5)]);
-    for (push, outcome) in [
-        (0.6, Outcome::Solved),
-        (0.3, Outcome::OffSheet),
-        (0.0, Outcome::BeyondFold),
-    ] {
-        assert_eq!(
-            row.classify(push, outcome),
-            (Regime::Unresolved, Status::Disagreement)
-        );
+    for (push, outcome) in
+        [(0.6, Outcome::Solved), (0.3, Outcome::OffSheet), (0.0, Outcome::BeyondFold)]
+    {
+        assert_eq!(row.classify(push, outcome), (Regime::Unresolved, Status::Disagreement));
     }
     let odd = RowBoundary::new(false, &[crossing(Edge::Fold, 0.5)]);
-    assert_eq!(
-        odd.classify(0.3, Outcome::Solved),
-        (Regime::Unresolved, Status::NoBoundary)
-    );
+    assert_eq!(odd.classify(0.3, Outcome::Solved), (Regime::Unresolved, Status::NoBoundary));
 }
 
 /// Known spans are valid. Beyond them another piece of the row may have a state.
@@ -205,16 +139,10 @@ fn cells_beyond_the_known_spans_of_an_incomplete_row_are_unresolved() {
     assert_eq!(row.classify(0.3, Outcome::Solved).0, Regime::Contact);
     assert_eq!(row.detachment().map(PushSpan::to), Some(0.5));
     for outcome in [Outcome::OffSheet, Outcome::BeyondFold, Outcome::Solved] {
-        assert_eq!(
-            row.classify(0.6, outcome),
-            (Regime::Unresolved, Status::NoBoundary)
-        );
+        assert_eq!(row.classify(0.6, outcome), (Regime::Unresolved, Status::NoBoundary));
     }
     let unknown = RowBoundary::new(false, &[Crossing::unknown()]);
-    assert_eq!(
-        unknown.classify(0.1, Outcome::OffSheet).0,
-        Regime::Unresolved
-    );
+    assert_eq!(unknown.classify(0.1, Outcome::OffSheet).0, Regime::Unresolved);
 }
 
 #[test]
@@ -235,15 +163,12 @@ fn coarse_steps_leave_no_cell_in_doubt() {
                    distance_mm = { from = 16, to = 19.98, count = 1000 }";
     let cone = include_str!("../scenes/cone.toml");
     let pointed = Scene::parse(cone, "cone.toml").unwrap();
-    let pointed = pointed
-        .with(whiskmap::scene::Parameter::TipRadiusUm, 0.0)
-        .unwrap();
+    let pointed = pointed.with(whiskmap::scene::Parameter::TipRadiusUm, 0.0).unwrap();
     let pushes: Vec<f64> = (-256..=256).map(|i| 70.0 * f64::from(i) / 256.0).collect();
     let pointed = pointed.to_builder().push_angle_deg(pushes).build().unwrap();
-    for (scene, tolerances) in [
-        (Scene::parse(slender, "slender").unwrap(), [1e-1, 1e-4]),
-        (pointed, [1e-1, 1e-3]),
-    ] {
+    for (scene, tolerances) in
+        [(Scene::parse(slender, "slender").unwrap(), [1e-1, 1e-4]), (pointed, [1e-1, 1e-3])]
+    {
         for tolerance_deg in tolerances {
             let mut plan = Plan::new(&scene).unwrap();
             let cheapest = cheapest(&scene, &Side::BOTH, tolerance_deg).unwrap();
@@ -281,9 +206,7 @@ fn one_verdict_holds_from_end_to_end() {
     for row in &rows {
         let alike = |outcome: Outcome, from: usize, to: usize| {
             let verdict = |push: &f64| (row.classify(*push, outcome), row.span(*push));
-            pushes[from..=to]
-                .iter()
-                .all(|push| verdict(push) == verdict(&pushes[from]))
+            pushes[from..=to].iter().all(|push| verdict(push) == verdict(&pushes[from]))
         };
         for from in 0..pushes.len() {
             for to in from..pushes.len() {
@@ -294,9 +217,7 @@ fn one_verdict_holds_from_end_to_end() {
             }
             // A push angle away from all ends is a range with one verdict.
             let ends = row.spans().iter().flat_map(|span| [span.from(), span.to()]);
-            let is_apart = ends
-                .into_iter()
-                .all(|end| (end - pushes[from]).abs() > 1.5 * TIE);
+            let is_apart = ends.into_iter().all(|end| (end - pushes[from]).abs() > 1.5 * TIE);
             assert_eq!(row.is_one_verdict(pushes[from], pushes[from]), is_apart);
         }
     }

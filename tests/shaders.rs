@@ -1,9 +1,5 @@
 //! The shaders without a device: every text that the engine can build is valid, with every choice of planes and every set of effects.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test fails by panicking"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use crate::effect_sets;
 use naga::back::PipelineConstants;
@@ -39,14 +35,10 @@ fn validate<const N: usize>(
         _ => Capabilities::FLOAT64,
     };
     let mut validator = Validator::new(ValidationFlags::all(), capabilities);
-    let info = validator
-        .validate(&module)
-        .map_err(|e| e.emit_to_string(text))?;
+    let info = validator.validate(&module).map_err(|e| e.emit_to_string(text))?;
     for entry in &module.entry_points {
         for constants in choices {
-            let named = constants
-                .iter()
-                .map(|(name, value)| ((*name).to_owned(), *value));
+            let named = constants.iter().map(|(name, value)| ((*name).to_owned(), *value));
             let constants: PipelineConstants = named.collect();
             let entry_point = Some((entry.stage, entry.name.as_str()));
             let (module, _) = process_overrides(&module, &info, entry_point, &constants)
@@ -71,10 +63,9 @@ fn every_text_is_valid() {
 #[test]
 fn a_broken_text_is_refused() {
     let text = shaders::cells(Precision::F32);
-    for (good, bad) in [
-        ("cell.point = state.yz", "cell.point = state.xyz"),
-        ("override HAS_POINTS: bool;", ""),
-    ] {
+    for (good, bad) in
+        [("cell.point = state.yz", "cell.point = state.xyz"), ("override HAS_POINTS: bool;", "")]
+    {
         assert!(text.contains(good));
         assert!(validate(&text.replace(good, bad), Precision::F32, &choices()).is_err());
     }

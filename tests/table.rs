@@ -50,13 +50,7 @@ fn every_row_is_the_map_of_its_whisker() {
             assert!(panel.regime.iter().all(|regime| *regime == unresolved));
             assert!(panel.status.iter().all(|status| *status == none));
             assert!(panel.state.iter().flatten().all(|value| value.is_nan()));
-            assert!(
-                panel
-                    .residual
-                    .iter()
-                    .chain(&panel.margin_deg)
-                    .all(|value| value.is_nan())
-            );
+            assert!(panel.residual.iter().chain(&panel.margin_deg).all(|value| value.is_nan()));
             assert!(table.of_whisker(index).is_err());
             continue;
         }
@@ -86,11 +80,7 @@ fn every_row_is_the_map_of_its_whisker() {
 #[test]
 fn groups_without_a_whisker_have_their_panels() {
     let row = |index: usize| {
-        let length_mm = if [200, 4999].contains(&index) {
-            20.0
-        } else {
-            f64::NAN
-        };
+        let length_mm = if [200, 4999].contains(&index) { 20.0 } else { f64::NAN };
         WhiskerRow::new(index.to_string())
             .set(Parameter::LengthMm, length_mm)
             .set(Parameter::BaseRadiusUm, 30.0)
@@ -106,10 +96,7 @@ fn groups_without_a_whisker_have_their_panels() {
     assert_eq!(panels.len(), 6000);
     let found = panels.iter().enumerate();
     let found = found.filter(|(_, panel)| panel.status != [Status::NoWhisker.code(); 2]);
-    assert_eq!(
-        found.map(|(index, _)| index).collect::<Vec<_>>(),
-        [200, 4999]
-    );
+    assert_eq!(found.map(|(index, _)| index).collect::<Vec<_>>(), [200, 4999]);
     assert_eq!((summary.cells(), summary.unresolved()), (12_000, 2 * 5998));
 }
 
@@ -127,11 +114,7 @@ fn every_row_has_the_curve_of_its_whisker() {
         match table.of_whisker(index) {
             Ok(alone) => {
                 let ends_alone = curve(&alone, Options::default()).unwrap();
-                assert!(
-                    ends.iter()
-                        .zip(&ends_alone)
-                        .all(|((_, one), (_, other))| one == other)
-                );
+                assert!(ends.iter().zip(&ends_alone).all(|((_, one), (_, other))| one == other));
             }
             Err(_) => {
                 let mut kinds = ends.iter().map(|(_, end)| end.kind);
@@ -164,17 +147,9 @@ fn tables_survive_their_texts() {
     );
     write("pad.toml", &scene("\"pad.csv\""));
     let read = Scene::read(place.path().join("pad.toml")).unwrap();
-    let files: Vec<_> = read
-        .csv_files()
-        .iter()
-        .map(|path| path.file_name().unwrap())
-        .collect();
+    let files: Vec<_> = read.csv_files().iter().map(|path| path.file_name().unwrap()).collect();
     assert_eq!(files, ["pad.csv", "e.csv", "f.csv"]);
-    assert!(
-        read.notes()[0].contains("columns that are not used: day"),
-        "{:?}",
-        read.notes()
-    );
+    assert!(read.notes()[0].contains("columns that are not used: day"), "{:?}", read.notes());
     let found: Vec<_> = read.table.iter().map(|row| row.found.is_ok()).collect();
     assert_eq!(found, [true, false, true, true]);
     assert_eq!(read.table[2..], listed.table[4..]);
@@ -185,27 +160,12 @@ fn tables_survive_their_texts() {
 #[test]
 fn wrong_tables_are_refused() {
     for (table, said) in [
-        (
-            "[]",
-            "whiskers.table: must have between 1 and 65536 rows, has 0",
-        ),
-        (
-            "3",
-            "expected the name of a CSV file or a list of { name, length_mm, ... }",
-        ),
-        (
-            "\"pad.csv\"",
-            "must be a list of rows: only a scene file may name a CSV file",
-        ),
+        ("[]", "whiskers.table: must have between 1 and 65536 rows, has 0"),
+        ("3", "expected the name of a CSV file or a list of { name, length_mm, ... }"),
+        ("\"pad.csv\"", "must be a list of rows: only a scene file may name a CSV file"),
         ("[{ length_mm = 20 }]", "missing field `name`"),
-        (
-            "[{ name = \" \" }]",
-            "whiskers.table[0]: the name of the whisker is missing",
-        ),
-        (
-            "[{ name = \"A\", lenght_mm = 20 }]",
-            "did you mean `length_mm`?",
-        ),
+        ("[{ name = \" \" }]", "whiskers.table[0]: the name of the whisker is missing"),
+        ("[{ name = \"A\", lenght_mm = 20 }]", "did you mean `length_mm`?"),
         (
             "[{ name = \"A\", length_mm = \"20\" }]",
             "invalid type: string \"20\", expected a number",
@@ -255,36 +215,13 @@ fn numbers_that_a_column_gives_are_refused() {
     let text = scene("[{ name = \"A\", COLUMN }, { name = \"B\" }]")
         .replace("[whisker]\n", &format!("[whisker]\n{numbers}"));
     let with = |column: &str| parse(&text.replace("COLUMN", column)).unwrap();
-    let bent = text.replace(
-        "[pole]",
-        "[whisker.curvature]\nparabola_per_mm = 0.02\n[pole]",
-    );
+    let bent = text.replace("[pole]", "[whisker.curvature]\nparabola_per_mm = 0.02\n[pole]");
     let bent = parse(&bent.replace("COLUMN", "spiral_per_mm = 0.01, spiral_per_mm2 = 0.001"));
     for (table, parameter, value, said) in [
-        (
-            &with("length_mm = 18"),
-            Parameter::LengthMm,
-            15.0,
-            "whisker.length_mm = 15",
-        ),
-        (
-            &with("taper = 0.9"),
-            Parameter::TipRadiusUm,
-            2.0,
-            "whisker.tip_radius_um = 2",
-        ),
-        (
-            &with("tip_radius_um = 2"),
-            Parameter::Taper,
-            0.5,
-            "whisker.taper = 0.5",
-        ),
-        (
-            &with("base_radius_um = 40"),
-            Parameter::Taper,
-            0.5,
-            "whisker.taper = 0.5",
-        ),
+        (&with("length_mm = 18"), Parameter::LengthMm, 15.0, "whisker.length_mm = 15"),
+        (&with("taper = 0.9"), Parameter::TipRadiusUm, 2.0, "whisker.tip_radius_um = 2"),
+        (&with("tip_radius_um = 2"), Parameter::Taper, 0.5, "whisker.taper = 0.5"),
+        (&with("base_radius_um = 40"), Parameter::Taper, 0.5, "whisker.taper = 0.5"),
         (
             &bent.unwrap(),
             Parameter::ParabolaPerMm,
@@ -293,10 +230,8 @@ fn numbers_that_a_column_gives_are_refused() {
         ),
     ] {
         let (column, _) = table.table_rows()[0].numbers()[0];
-        let said = format!(
-            "{said}: must be left out: whiskers.table has the column {}",
-            column.name()
-        );
+        let said =
+            format!("{said}: must be left out: whiskers.table has the column {}", column.name());
         let why = table.with(parameter, value).unwrap_err().to_string();
         assert_eq!(why, format!("error: {said}"));
         // The whisker of a row is a scene without a table.
@@ -305,9 +240,7 @@ fn numbers_that_a_column_gives_are_refused() {
     let tapers = with("taper = 0.9").with(Parameter::BaseRadiusUm, 40.0);
     let tapers = tapers.unwrap().whisker(0).unwrap().whisker;
     assert!((tapers.tip_radius_um - 4.0).abs() < 1e-12);
-    let tapered = Scene::builder("A pad")
-        .set(Parameter::LengthMm, 20.0)
-        .set(Parameter::Taper, 0.5);
+    let tapered = Scene::builder("A pad").set(Parameter::LengthMm, 20.0).set(Parameter::Taper, 0.5);
     let rows = [WhiskerRow::new("A").set(Parameter::BaseRadiusUm, 30.0)];
     let why = tapered.whiskers(rows).build().unwrap_err().to_string();
     let said = "must be left out: whiskers.table has the column base_radius_um";
@@ -316,10 +249,8 @@ fn numbers_that_a_column_gives_are_refused() {
     let why = parse(&tapered.replace("COLUMN", "base_radius_um = 40")).unwrap_err();
     assert!(why.contains(said), "{why}");
     let measured = scene("[{ name = \"A\", length_mm = 16 }]");
-    let measured = measured.replace(
-        "[whisker]\n",
-        "[whisker]\nprofile.rows = [[0, 33], [16, 2]]\n",
-    );
+    let measured =
+        measured.replace("[whisker]\n", "[whisker]\nprofile.rows = [[0, 33], [16, 2]]\n");
     let measured = parse(&measured).unwrap().with(Parameter::Taper, 0.5);
     let said = "whisker.taper = 0.5: must be left out: the radii are those of whisker.profile";
     assert_eq!(measured.unwrap_err().to_string(), format!("error: {said}"));

@@ -8,14 +8,7 @@ use whiskmap::sheet::{Crossing, Edge, Row, Sheet};
 
 /// Row that touches and slips off at a push angle of 0.5.
 fn slips_off(residual: f64) -> RowBoundary {
-    let end = Crossing {
-        edge: Edge::Fold,
-        tau: 1.0,
-        load: 1.0,
-        push: 0.5,
-        residual,
-        slope: 0.0,
-    };
+    let end = Crossing { edge: Edge::Fold, tau: 1.0, load: 1.0, push: 0.5, residual, slope: 0.0 };
     RowBoundary::new(true, &[end])
 }
 
@@ -41,12 +34,7 @@ fn a_crossing_is_found_with_a_residual_up_to_1e_10() {
 #[test]
 fn a_whisker_reaches_a_pole_1e_12_beyond_its_tip() {
     for (by, reaches) in [(0.5e-12, true), (2e-12, false)] {
-        let row = Row {
-            pole_distance: 1.0 + by,
-            contact: 1.0 + by,
-            touch: 0.0,
-            end: 1.0,
-        };
+        let row = Row { pole_distance: 1.0 + by, contact: 1.0 + by, touch: 0.0, end: 1.0 };
         assert_eq!((row.is_reached(), row.is_at_reach()), (reaches, reaches));
     }
 }
@@ -63,11 +51,7 @@ fn a_row_at_the_reach_of_a_straight_whisker_ends_at_first_touch() {
     for taper in [0.0, 0.3, 0.8, 0.95] {
         for friction in [0.0, 0.02, 0.05, 0.1, 0.2, 0.5] {
             for distances in [&[1.0][..], &[0.5, 1.0]] {
-                let rod = Rod {
-                    taper,
-                    friction,
-                    ..Rod::default()
-                };
+                let rod = Rod { taper, friction, ..Rod::default() };
                 let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, distances);
                 let row = distances.len() - 1;
                 let crossings = &sheet.crossings[row];
@@ -101,13 +85,9 @@ fn loads_from_first_touch_to_the_fold_are_on_the_sheet() {
     // A map with a positive determinant, so that the load alone decides.
     let at_touch = [(end.tau, 0.0)];
     let map: ShootingMap = Batch::new(Method::fine()).shoot_at(&sheet.rod, at_touch)[0];
-    for (part, is_on_sheet) in [
-        (-2e-6, false),
-        (-0.5e-6, true),
-        (0.5, true),
-        (1.0 + 0.5e-4, true),
-        (1.0 + 2e-4, false),
-    ] {
+    for (part, is_on_sheet) in
+        [(-2e-6, false), (-0.5e-6, true), (0.5, true), (1.0 + 0.5e-4, true), (1.0 + 2e-4, false)]
+    {
         let load = part * end.load;
         assert_eq!(sheet.is_stable(end.tau, load, &map), is_on_sheet, "{part}");
     }

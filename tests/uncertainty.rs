@@ -110,9 +110,7 @@ fn first_order_is_the_sum_of_squares() {
 fn a_base_that_varies_with_the_taper_moves_no_angle() {
     let foretold = |uncertainty: &str| -> Vec<f64> {
         let rows = spreads(&scene(uncertainty), 2, 1);
-        rows.iter()
-            .filter_map(|row| row.sd_first_order_deg)
-            .collect()
+        rows.iter().filter_map(|row| row.sd_first_order_deg).collect()
     };
     let both = foretold("base_radius_um = 5\ntaper = 0.001");
     let alone = foretold("taper = 0.001");
@@ -126,10 +124,7 @@ fn a_base_that_varies_with_the_taper_moves_no_angle() {
 fn every_row_of_a_profile_varies() {
     let measured = include_str!("../scenes/measured.toml")
         .replace("\"measured.csv\"", "[[0, 30], [8, 20], [20, 4]]")
-        .replace(
-            "distance_mm = { from = 2, to = 20, count = 512 }",
-            "distance_mm = [12]",
-        );
+        .replace("distance_mm = { from = 2, to = 20, count = 512 }", "distance_mm = [12]");
     let scene = Scene::parse(
         &format!("{measured}\n[uncertainty]\nprofile_radius_um = 0.5\n"),
         "measured.toml",
@@ -160,10 +155,7 @@ fn every_row_of_a_profile_varies() {
 fn every_row_of_a_smooth_profile_varies() {
     // Errors of 0.1 um keep the degree where the rows move a little.
     let row = |i: u32| {
-        [
-            2.0 * f64::from(i),
-            30.0 - 3.0 * f64::from(i) + [0.1, -0.1, -0.05, 0.08][i as usize % 4],
-        ]
+        [2.0 * f64::from(i), 30.0 - 3.0 * f64::from(i) + [0.1, -0.1, -0.05, 0.08][i as usize % 4]]
     };
     let rows: Vec<[f64; 2]> = (0..9).map(row).collect();
     let text = format!(
@@ -229,11 +221,7 @@ fn draws_outside_of_the_limits_are_drawn_again() {
 
 #[test]
 fn ends_out_of_reach_are_counted() {
-    let scene = scene("length_mm = 0.5")
-        .to_builder()
-        .distance_mm([19.3])
-        .build()
-        .unwrap();
+    let scene = scene("length_mm = 0.5").to_builder().distance_mm([19.3]).build().unwrap();
     for row in spreads(&scene, 100, 1) {
         assert!(row.out_of_reach > 10 && row.out_of_reach < 90, "{row:?}");
         let all = row.slip_off + row.pull_off + row.out_of_reach + row.unresolved;
@@ -241,17 +229,8 @@ fn ends_out_of_reach_are_counted() {
     }
     let never = scene.to_builder().distance_mm([40.0]).build().unwrap();
     for row in spreads(&never, 10, 1) {
-        assert_eq!(
-            (row.kind, row.out_of_reach),
-            (DetachmentKind::OutOfReach, 10)
-        );
-        let numbers = [
-            row.p5_deg,
-            row.p50_deg,
-            row.mean_deg,
-            row.sd_deg,
-            row.sd_first_order_deg,
-        ];
+        assert_eq!((row.kind, row.out_of_reach), (DetachmentKind::OutOfReach, 10));
+        let numbers = [row.p5_deg, row.p50_deg, row.mean_deg, row.sd_deg, row.sd_first_order_deg];
         assert_eq!(numbers, [None; 5]);
     }
 }
@@ -263,24 +242,14 @@ fn what_cannot_be_drawn_is_refused() {
     let why = |scene: &Scene, samples| Draws::new(scene, samples, 1).unwrap_err();
     assert_eq!(why(&cone, 10), DrawError::NoTable);
     let many = scene("length_mm = 1");
-    let too_many = DrawError::TooMany {
-        ends: 30_000_000,
-        distances: 3,
-    };
+    let too_many = DrawError::TooMany { ends: 30_000_000, distances: 3 };
     assert_eq!(why(&many, 10_000_000), too_many);
-    let axis = many
-        .to_builder()
-        .sweep(Parameter::ParabolaPerMm, [0.02])
-        .build()
-        .unwrap();
+    let axis = many.to_builder().sweep(Parameter::ParabolaPerMm, [0.02]).build().unwrap();
     assert_eq!(why(&axis, 10), DrawError::Sweep("grid.curvature_per_mm"));
     let wide =
         scene("length_mm = 1e5\nbase_radius_um = 1e5\nvertex_mm = 1e5\npole_radius_mm = 1e5");
     let said = why(&wide, 10).to_string();
-    assert!(
-        said.starts_with("1000 draws in a row are outside"),
-        "{said}"
-    );
+    assert!(said.starts_with("1000 draws in a row are outside"), "{said}");
 }
 
 /// Loads are proportional to the fourth power of the radii, and the push angle does not depend on them. The tip's cone matters to pull-offs
@@ -330,11 +299,7 @@ fn measured_radii_spread_loads_by_their_factor_and_pull_offs_by_their_tip() {
         }
     }
     let [near, far] = spread("tip_extension_mm = 1e-3");
-    assert_eq!(
-        [near.slip_off, far.pull_off],
-        [2_000; 2],
-        "{near:?} {far:?}"
-    );
+    assert_eq!([near.slip_off, far.pull_off], [2_000; 2], "{near:?} {far:?}");
     assert!(near.sd_deg.unwrap() < 1e-9, "{near:?}");
     let [sd, foretold] = [far.sd_deg, far.sd_first_order_deg].map(Option::unwrap);
     assert!(sd > 1e-4 && (sd / foretold - 1.0).abs() < 0.06, "{far:?}");
@@ -393,19 +358,10 @@ fn largest_loads_of_samples_spread_as_the_loads_of_one_push() {
         ] {
             let load = load.unwrap();
             // 2,000 states are up to 1e-6 below the largest one.
-            assert!(
-                (-1e-9..2e-6).contains(&(load / wanted - 1.0)),
-                "{side:?} {load} {wanted}"
-            );
+            assert!((-1e-9..2e-6).contains(&(load / wanted - 1.0)), "{side:?} {load} {wanted}");
             // 200 samples leave 5 % of the deviation, and 7 % of it in the mean.
-            assert!(
-                (sd.unwrap() / load / (power * 1e-3) - 1.0).abs() < 0.2,
-                "{largest:?}"
-            );
-            assert!(
-                (mean.unwrap() / load - 1.0).abs() < 3e-4 * power,
-                "{largest:?}"
-            );
+            assert!((sd.unwrap() / load / (power * 1e-3) - 1.0).abs() < 0.2, "{largest:?}");
+            assert!((mean.unwrap() / load - 1.0).abs() < 3e-4 * power, "{largest:?}");
         }
         let [largest, at_end] =
             [largest.max_base_moment_nnm, end.base_moment_nnm].map(Option::unwrap);

@@ -31,11 +31,7 @@ fn scale(condition: &InitialCondition) -> DVec2 {
 }
 
 fn moved<'a>(condition: &InitialCondition<'a>, step: DVec2) -> InitialCondition<'a> {
-    InitialCondition {
-        tau: condition.tau + step.x,
-        load: condition.load + step.y,
-        ..*condition
-    }
+    InitialCondition { tau: condition.tau + step.x, load: condition.load + step.y, ..*condition }
 }
 
 /// Angle of the tangent (from that of `near`), place, force and energy.
@@ -46,12 +42,7 @@ fn numbers(full: &FullState, near: &FullState) -> [f64; 5] {
 }
 
 fn listed(change: &StateDerivative) -> [f64; 5] {
-    let StateDerivative {
-        angle,
-        position,
-        force,
-        energy,
-    } = *change;
+    let StateDerivative { angle, position, force, energy } = *change;
     [angle, position.x, position.y, force, energy]
 }
 
@@ -74,11 +65,7 @@ fn a_state_changes_as_it_says() {
                 Batch::new(method).shoot::<FirstVariation>(&there)
             });
             for (i, condition) in conditions.iter().enumerate() {
-                let by = if axis == DVec2::X {
-                    here[i].by_tau
-                } else {
-                    here[i].by_load
-                };
+                let by = if axis == DVec2::X { here[i].by_tau } else { here[i].by_load };
                 let full = &here[i].full;
                 let [low, high] = [&before[i], &after[i]].map(|m| numbers(&m.full, full));
                 let width = scale(condition).dot(axis);
@@ -88,10 +75,7 @@ fn a_state_changes_as_it_says() {
                     let size = 1.0 + sizes[k].abs() + difference.abs();
                     let apart = (width * change - difference).abs() / size;
                     worst = worst.max(apart);
-                    assert!(
-                        apart < 3e-7,
-                        "{effects:?} {axis} {k} {condition:?}: {apart:e}"
-                    );
+                    assert!(apart < 3e-7, "{effects:?} {axis} {k} {condition:?}: {apart:e}");
                 }
             }
         }
@@ -108,10 +92,8 @@ fn taylor_extrapolation_is_of_second_order() {
         let conditions = conditions(effects);
         let here = Batch::new(method).shoot::<SecondVariation>(&conditions);
         let step = |condition: &InitialCondition| 1e-4 * DVec2::new(0.6, -0.8) * scale(condition);
-        let there: Vec<InitialCondition> = conditions
-            .iter()
-            .map(|condition| moved(condition, step(condition)))
-            .collect();
+        let there: Vec<InitialCondition> =
+            conditions.iter().map(|condition| moved(condition, step(condition))).collect();
         let there = Batch::new(method).shoot::<ShootingMap>(&there);
         for ((condition, here), there) in conditions.iter().zip(&here).zip(&there) {
             let found = here.extrapolated(step(condition)).map;
@@ -156,22 +138,12 @@ fn rough() -> [Scene; 2] {
 /// The residual of a refined state bounds what a trajectory finds there, at every resolution.
 #[test]
 fn residuals_are_bounds() {
-    let scenes = [
-        "cone",
-        "measured",
-        "cylinder",
-        "euler_spiral",
-        "traced",
-        "fig4_whisker",
-    ];
+    let scenes = ["cone", "measured", "cylinder", "euler_spiral", "traced", "fig4_whisker"];
     let shipped = scenes.map(|name| {
         let scene = shipped::scene(name);
         (name, scene)
     });
-    for (name, scene) in shipped
-        .into_iter()
-        .chain(rough().map(|scene| ("rough", scene)))
-    {
+    for (name, scene) in shipped.into_iter().chain(rough().map(|scene| ("rough", scene))) {
         let whisker = scene.first_whisker().whisker;
         for side in Side::BOTH {
             let rod = whisker.rod(&scene.pole, side);
@@ -205,10 +177,7 @@ fn residuals_are_bounds() {
 /// millionth of the base's. Measured 6e-12 and 1.3e-8.
 #[test]
 fn the_energy_is_known_toward_the_tip() {
-    let rod = Rod {
-        taper: 1.0,
-        ..Rod::default()
-    };
+    let rod = Rod { taper: 1.0, ..Rod::default() };
     for (radius, bound) in [(1e-3, 1e-10), (1e-6, 1e-7)] {
         let (tau, load) = (-f64::ln(radius), 6.0);
         let energy = |resolution: Resolution| {

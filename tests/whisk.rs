@@ -23,10 +23,7 @@ fn through(scene: &Scene, distance_mm: f64, angles: &[f64]) -> Result<Whisk, Whi
 }
 
 fn kinds(events: &[WhiskEvent]) -> Vec<(WhiskEventKind, Side)> {
-    events
-        .iter()
-        .map(|event| (event.event, event.side))
-        .collect()
+    events.iter().map(|event| (event.event, event.side)).collect()
 }
 
 /// The distance of first touch on CF in front of the pole that touches at `distance_mm` on CB.
@@ -46,10 +43,7 @@ fn events_and_states_are_those_of_curves_and_branches() {
         let back: Vec<f64> = angles.iter().rev().map(|deg| deg - 120.0).collect();
         let found = through(&scene, DISTANCE, &[angles, back].concat()).unwrap();
         let distances = [DISTANCE, cf_distance(&scene, DISTANCE)];
-        let mut detached = found
-            .events
-            .iter()
-            .filter(|event| event.event != WhiskEventKind::Touch);
+        let mut detached = found.events.iter().filter(|event| event.event != WhiskEventKind::Touch);
         for (side, distance) in [Side::Cb, Side::Cf].into_iter().zip(distances) {
             let end = curve(&scene.whisker, &scene.pole, side, &[distance])[0];
             let event = detached.next().unwrap();
@@ -65,16 +59,10 @@ fn events_and_states_are_those_of_curves_and_branches() {
             ];
             for (value, wanted) in ends {
                 // The pole's distance is the root of an equation: 1e-15 of it can change a push by 1e-12.
-                assert!(
-                    (value / wanted.unwrap() - 1.0).abs() < 1e-11,
-                    "{name} {value} {wanted:?}"
-                );
+                assert!((value / wanted.unwrap() - 1.0).abs() < 1e-11, "{name} {value} {wanted:?}");
             }
             let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
-            let in_contact = found
-                .samples
-                .iter()
-                .filter(|sample| sample.side == Some(side));
+            let in_contact = found.samples.iter().filter(|sample| sample.side == Some(side));
             let in_contact: Vec<_> = in_contact.collect();
             assert!(in_contact.len() > 3, "{name}");
             for sample in in_contact {
@@ -137,11 +125,7 @@ fn a_cycle_without_detachment_is_closed() {
     let down: Vec<f64> = up.iter().rev().copied().collect();
     let forces = |angles: &[f64]| -> Vec<f64> {
         let found = through(&cone, DISTANCE, angles).unwrap();
-        found
-            .samples
-            .iter()
-            .map(|sample| sample.force_un.unwrap())
-            .collect()
+        found.samples.iter().map(|sample| sample.force_un.unwrap()).collect()
     };
     let closed = forces(&[&up[..], &down].concat());
     for (one, other) in closed.iter().zip(closed.iter().rev()) {
@@ -161,12 +145,7 @@ fn the_lost_energy_is_unknown_if_one_of_its_energies_is() {
         ..WhiskEvent::default()
     };
     let lost = |event: WhiskEventKind, angle_deg: f64, energy_nj: Option<f64>| {
-        let next = WhiskEvent {
-            event,
-            angle_deg,
-            energy_nj,
-            ..WhiskEvent::default()
-        };
+        let next = WhiskEvent { event, angle_deg, energy_nj, ..WhiskEvent::default() };
         let course = Whisk {
             samples: Vec::new(),
             events: vec![detachment, next],
@@ -178,10 +157,7 @@ fn the_lost_energy_is_unknown_if_one_of_its_energies_is() {
     };
     let (touch, undecided) = (WhiskEventKind::Touch, WhiskEventKind::Undecided);
     assert_eq!(lost(touch, 10.0, Some(2.0)), 3.0);
-    assert_eq!(
-        [lost(touch, 11.0, None), lost(undecided, 11.0, None)],
-        [5.0; 2]
-    );
+    assert_eq!([lost(touch, 11.0, None), lost(undecided, 11.0, None)], [5.0; 2]);
     let unknown = [lost(touch, 10.0, None), lost(undecided, 10.0, Some(5.0))];
     assert!(unknown.iter().all(|lost| lost.is_nan()));
 }
@@ -194,18 +170,13 @@ fn the_work_of_the_base_is_the_lost_energy() {
     for (name, distance) in [("cone", DISTANCE), ("cylinder", DISTANCE), ("robot", 60.0)] {
         let scene = scene(name);
         let first = through(&scene, distance, &[-1.0, 200.0, -200.0]).unwrap();
-        let detached = first
-            .events
-            .iter()
-            .filter(|event| event.event != WhiskEventKind::Touch);
+        let detached = first.events.iter().filter(|event| event.event != WhiskEventKind::Touch);
         let mut work = 0.0;
         for end in detached {
             let push = end.push_angle_deg.unwrap();
             let touch = end.angle_deg - push;
             let rest = (0..COUNT).map(|i| (i as f64 + 0.5) / COUNT as f64);
-            let angles = rest
-                .clone()
-                .map(|u| touch + push * (1.0 - (1.0 - u).powi(2)));
+            let angles = rest.clone().map(|u| touch + push * (1.0 - (1.0 - u).powi(2)));
             let angles: Vec<f64> = [touch].into_iter().chain(angles).collect();
             let found = through(&scene, distance, &angles).unwrap();
             let work_of_leg: f64 = rest
@@ -232,21 +203,12 @@ fn the_work_of_the_base_is_the_lost_energy() {
 fn undecided_samples_have_a_reason() {
     let cone = scene("cone");
     let why = through(&cone, DISTANCE, &[1.0, 2.0]).unwrap_err();
-    assert!(
-        matches!(why, WhiskError::Begin { angle_deg: 1.0, .. }),
-        "{why}"
-    );
-    assert!(matches!(
-        through(&cone, 30.0, &[0.0, 1.0]),
-        Err(WhiskError::Pole(_))
-    ));
+    assert!(matches!(why, WhiskError::Begin { angle_deg: 1.0, .. }), "{why}");
+    assert!(matches!(through(&cone, 30.0, &[0.0, 1.0]), Err(WhiskError::Pole(_))));
     // Next to the tip a push ends before the resting whisker is clear of the pole.
     let found = through(&cone, 19.65, &[-1.0, 0.5, 1.0, 5.0]).unwrap();
-    let regimes: Vec<_> = found
-        .samples
-        .iter()
-        .map(|sample| (sample.regime, sample.reason))
-        .collect();
+    let regimes: Vec<_> =
+        found.samples.iter().map(|sample| (sample.regime, sample.reason)).collect();
     let last = (WhiskRegime::Free, None);
     assert_eq!(regimes[3], last);
     assert!(
@@ -261,14 +223,8 @@ fn the_ends_of_the_ranges_of_a_sine_are_accepted() {
     let sine = |frequency, seconds| AngleCourse::sine(10.0, frequency, seconds, 1.0);
     let most = sine(0.5, 999_999.0).unwrap();
     assert_eq!(most.times_s().len(), 1_000_000);
-    assert_eq!(
-        sine(0.5, 1_000_000.0),
-        Err(CourseError::Samples(1_000_001.0))
-    );
-    assert!(matches!(
-        sine(0.51, 10.0),
-        Err(CourseError::Frequency { .. })
-    ));
+    assert_eq!(sine(0.5, 1_000_000.0), Err(CourseError::Samples(1_000_001.0)));
+    assert!(matches!(sine(0.51, 10.0), Err(CourseError::Frequency { .. })));
 }
 
 /// A course that is cut in the middle of a touch has the states of the whole course if it begins in contact. Without a start, a free
@@ -281,11 +237,7 @@ fn a_cut_course_begins_in_contact() {
             let angles: Vec<f64> = (0..=40).map(|i| sign * f64::from(i) * 0.5).collect();
             let before = [-sign, 0.0].map(|deg| if sign < 0.0 { 5.0 + deg } else { deg });
             let whole = through(&scene, DISTANCE, &[&before[..], &angles].concat()).unwrap();
-            assert!(
-                whole.warnings().is_empty() == (sign > 0.0),
-                "{:?}",
-                whole.warnings()
-            );
+            assert!(whole.warnings().is_empty() == (sign > 0.0), "{:?}", whole.warnings());
             let cut = &angles[20..];
             let times = (0..cut.len()).map(|i| (22 + i) as f64).collect();
             let course = AngleCourse::new(times, cut.to_vec()).unwrap();
@@ -302,10 +254,8 @@ fn a_cut_course_begins_in_contact() {
             assert_eq!(free.samples[0].regime, WhiskRegime::Free);
             let assumed = of(None);
             assert_eq!(assumed.samples, free.samples);
-            let is_beyond = assumed
-                .warnings()
-                .iter()
-                .any(|warning| warning.contains("beyond first touch"));
+            let is_beyond =
+                assumed.warnings().iter().any(|warning| warning.contains("beyond first touch"));
             assert_eq!(is_beyond, sign > 0.0);
         }
     }
@@ -352,10 +302,7 @@ fn a_course_continues_across_a_bridged_gap() {
         assert_eq!(kinds(&found.events), kinds(&wanted.events));
         for (event, other) in found.events.iter().zip(&wanted.events) {
             // Times are interpolated over longer lines.
-            assert!(
-                (event.time_s - other.time_s).abs() < 1e-12,
-                "{event:?} {other:?}"
-            );
+            assert!((event.time_s - other.time_s).abs() < 1e-12, "{event:?} {other:?}");
             assert_eq!(event.force_un, other.force_un);
         }
         for ((sample, other), angle) in found.samples.iter().zip(&wanted.samples).zip(angles) {
@@ -371,11 +318,7 @@ fn a_course_continues_across_a_bridged_gap() {
                 false => assert_eq!(sample, other),
             }
         }
-        let counts: Vec<_> = found
-            .gaps
-            .iter()
-            .map(|gap| (gap.count, gap.is_bridged))
-            .collect();
+        let counts: Vec<_> = found.gaps.iter().map(|gap| (gap.count, gap.is_bridged)).collect();
         assert_eq!(counts, [(1, true), (2, true), (1, true)]);
         assert_eq!(found.lost_nj(), wanted.lost_nj());
         // The longest gap lasts 3 s: a shorter bridge ends there.
@@ -393,14 +336,9 @@ fn a_course_is_undecided_after_a_gap_until_one_phase_is_left() {
         let scene = scene("cone").with(Parameter::Friction, friction).unwrap();
         let found = with_gaps(&scene, &angles, 0.0);
         let (missing, after) = (Some(Undecided::Missing), Some(Undecided::AfterGap));
-        let wanted = [
-            missing, None, None, missing, after, None, None, None, missing,
-        ];
+        let wanted = [missing, None, None, missing, after, None, None, None, missing];
         assert_eq!(reasons(&found), wanted, "{friction}");
-        let regimes: Vec<_> = found.samples[5..8]
-            .iter()
-            .map(|sample| sample.regime)
-            .collect();
+        let regimes: Vec<_> = found.samples[5..8].iter().map(|sample| sample.regime).collect();
         let (free, contact) = (WhiskRegime::Free, WhiskRegime::Contact);
         assert_eq!(regimes, [free, free, contact]);
         let held = through(&scene, DISTANCE, &[-10.0, 20.0, 5.0, -5.0]).unwrap();
@@ -424,10 +362,7 @@ fn a_course_that_begins_with_a_gap_is_undecided_without_a_start() {
     let (missing, after) = (Some(Undecided::Missing), Some(Undecided::AfterGap));
     let scene = scene("cone");
     let found = with_gaps(&scene, &angles, 100.0);
-    assert_eq!(
-        reasons(&found),
-        [missing, after, after, None, None, missing]
-    );
+    assert_eq!(reasons(&found), [missing, after, after, None, None, missing]);
     let warnings = found.warnings();
     let ends_with = "is possible; choose the start `contact` or `free`";
     assert!(warnings[0].ends_with(ends_with), "{warnings:?}");
@@ -459,9 +394,7 @@ fn samples_next_to_an_end_have_states() {
     for from in [-90.0, 90.0] {
         let whole = through(&scene, distance, &[from, -from]).unwrap();
         let end = whole.events[1].angle_deg;
-        let before = (0..25)
-            .rev()
-            .map(|i| end * (1.0 - f64::from(i) * f64::EPSILON));
+        let before = (0..25).rev().map(|i| end * (1.0 - f64::from(i) * f64::EPSILON));
         let angles: Vec<f64> = std::iter::once(from).chain(before).collect();
         let found = through(&scene, distance, &angles).unwrap();
         assert_eq!(reasons(&found), vec![None; angles.len()], "{end}");
@@ -498,28 +431,17 @@ fn contacts_and_curvatures_are_those_of_shapes() {
                 continue;
             };
             let is_cf = side == Side::Cf;
-            let distance = if is_cf {
-                cf_distance(&scene, DISTANCE)
-            } else {
-                DISTANCE
-            };
+            let distance = if is_cf { cf_distance(&scene, DISTANCE) } else { DISTANCE };
             let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
             let push = sample.push_angle_deg.unwrap();
             let state = branch.state(push.to_radians(), true).unwrap();
             let shape = branch.shape(&state, 101);
-            let contact = shape
-                .points
-                .iter()
-                .find(|point| point.part == WhiskerPart::Contact)
-                .unwrap();
+            let contact =
+                shape.points.iter().find(|point| point.part == WhiskerPart::Contact).unwrap();
             let near = |point: &&ShapePoint| (point.arc_length_mm - at_mm).abs() < 1e-9;
             let at = shape.points.iter().find(near).unwrap();
             // The axes of first touch on CF are turned by the touch.
-            let turn = if is_cf {
-                -found.cf_touch_deg.to_radians()
-            } else {
-                0.0
-            };
+            let turn = if is_cf { -found.cf_touch_deg.to_radians() } else { 0.0 };
             let (sin, cos) = turn.sin_cos();
             let [x, y] = [contact.x_mm, contact.y_mm];
             let wanted = [x * cos - y * sin, x * sin + y * cos];
@@ -569,10 +491,7 @@ fn shapes_of_a_course_stand_at_the_pole() {
         };
         let contact = [sample.contact_x_mm, sample.contact_y_mm].map(Option::unwrap);
         let apart = |at: [f64; 2]| (at[0] - contact[0]).hypot(at[1] - contact[1]);
-        let nearest = all
-            .iter()
-            .map(|at| apart(*at))
-            .fold(f64::INFINITY, f64::min);
+        let nearest = all.iter().map(|at| apart(*at)).fold(f64::INFINITY, f64::min);
         assert!(nearest < 1e-8, "{nearest} {sample:?}");
         assert!((apart(shapes.pole_mm) - scene.pole.radius_mm).abs() < 1e-8);
         compared[usize::from(side == Side::Cf)] += 1;

@@ -20,11 +20,7 @@ fn scene(more: &str, yield_strain: Option<f64>) -> Scene {
          [grid]\npush_angle_deg = {{ from = -60, to = 60, count = 41 }}\ndistance_mm = {{ from = 3, to = 19.5, count = 12 }}"
     );
     let scene = Scene::parse(&text, "y.toml").unwrap();
-    scene
-        .to_builder()
-        .yield_strain(yield_strain)
-        .build()
-        .unwrap()
+    scene.to_builder().yield_strain(yield_strain).build().unwrap()
 }
 
 const CONE: &str = "base_radius_um = 30\ntip_radius_um = 1.5";
@@ -66,10 +62,7 @@ fn states_are_marked_from_the_yield_strain_on() {
             false => below = middle,
         }
     }
-    assert!(
-        1.0 < below && below < branch.stable_end_deg() - 1.0,
-        "{below}"
-    );
+    assert!(1.0 < below && below < branch.stable_end_deg() - 1.0, "{below}");
     let mark = |push_deg: f64| {
         let state = branch.state(f64::to_radians(push_deg), true).unwrap();
         YieldMark::new(&scene.whisker, branch.point_of(&state).peak_strain).unwrap()
@@ -110,10 +103,7 @@ fn contact_and_force_of_a_row_give_its_strain() {
             for (point, mark) in rows.iter().zip(marks) {
                 let strain = mark.peak_strain.unwrap();
                 let apart = (strain - point.peak_strain).abs();
-                assert!(
-                    apart <= most * point.peak_strain,
-                    "{more}: {point:?} {strain}"
-                );
+                assert!(apart <= most * point.peak_strain, "{more}: {point:?} {strain}");
                 assert_eq!(mark.yields, Some(strain > 0.003));
                 if let Some(sliding) = point.sliding {
                     slidings[sliding as usize] += 1;
@@ -146,60 +136,39 @@ fn a_push_is_marked_by_its_largest_strain() {
     let largest = strains.fold(0.0, f64::max);
     assert!(end.peak_strain.unwrap() < 0.98 * largest);
     let cylinder = |yield_strain| scene(CYLINDER, Some(yield_strain));
-    for (yield_strain, yields) in [
-        (largest * (1.0 - 1e-4), true),
-        (largest * (1.0 + 1e-4), false),
-    ] {
+    for (yield_strain, yields) in [(largest * (1.0 - 1e-4), true), (largest * (1.0 + 1e-4), false)]
+    {
         let scene = cylinder(yield_strain);
         let mark = PushMark::of_end(&scene.whisker, &scene.pole, &end).unwrap();
         // 400 pushes miss the maximum by 3e-6.
-        assert!(
-            (mark.max_strain.unwrap() / largest - 1.0).abs() < 1e-5,
-            "{mark:?} {largest}"
-        );
+        assert!((mark.max_strain.unwrap() / largest - 1.0).abs() < 1e-5, "{mark:?} {largest}");
         assert_eq!(mark.yields, Some(yields), "{mark:?}");
     }
     // A corner has the mark of the push that ends at it.
     let scene = scene(CONE, Some(largest));
     let corner = corner(&scene.whisker, &scene.pole, Side::Cb);
-    let end = curve(
-        &scene.whisker,
-        &scene.pole,
-        Side::Cb,
-        &[corner.distance_mm.unwrap()],
-    )[0];
+    let end = curve(&scene.whisker, &scene.pole, Side::Cb, &[corner.distance_mm.unwrap()])[0];
     let marks = [
         PushMark::of_corner(&scene.whisker, &scene.pole, &corner),
         PushMark::of_end(&scene.whisker, &scene.pole, &end),
     ];
-    assert!(
-        marks[0].unwrap().max_strain.unwrap() > 1e-4 && marks[0] == marks[1],
-        "{marks:?}"
-    );
+    assert!(marks[0].unwrap().max_strain.unwrap() > 1e-4 && marks[0] == marks[1], "{marks:?}");
     // Without a detachment there is no push.
     let scene = cylinder(1e-3);
     let beyond = curve(&scene.whisker, &scene.pole, Side::Cb, &[20.5])[0];
     let none = PushMark::of_end(&scene.whisker, &scene.pole, &beyond);
     assert_eq!(none, Some(PushMark::default()));
-    assert_eq!(
-        PushMark::of_end(&elastic.whisker, &elastic.pole, &end),
-        None
-    );
+    assert_eq!(PushMark::of_end(&elastic.whisker, &elastic.pole, &end), None);
 }
 
 /// Returns true if the rows of a side of the scene's whisker are followed by continuation.
 fn is_continued(scene: &Scene) -> bool {
     let length = scene.whisker.length_mm;
-    let distances: Vec<f64> = scene
-        .grid
-        .distance_mm
-        .iter()
-        .map(|distance| distance / length)
-        .collect();
+    let distances: Vec<f64> =
+        scene.grid.distance_mm.iter().map(|distance| distance / length).collect();
     let rod = |side| scene.whisker.rod(&scene.pole, side);
-    let mut sheets = Side::BOTH
-        .map(|side| Sheet::new(Method::fine(), &rod(side), side, &distances))
-        .into_iter();
+    let mut sheets =
+        Side::BOTH.map(|side| Sheet::new(Method::fine(), &rod(side), side, &distances)).into_iter();
     sheets.any(|sheet| sheet.is_continued())
 }
 
@@ -250,11 +219,7 @@ fn cells_have_the_strains_of_their_states() {
         assert!(compared > 80, "{more}: {compared}");
         for panel in &panels {
             let cells = panel.peak_strain.iter().zip(panel.channel(Channel::Force));
-            assert!(
-                cells
-                    .into_iter()
-                    .all(|(strain, force)| strain.is_nan() == force.is_nan())
-            );
+            assert!(cells.into_iter().all(|(strain, force)| strain.is_nan() == force.is_nan()));
         }
     }
 }
@@ -265,21 +230,12 @@ fn cells_beyond_the_yield_strain_are_counted() {
     for more in [CONE, ROUGH] {
         let marked = scene(more, Some(0.003));
         let (summary, panels) = compute(&marked, None);
-        let beyond = panels[0]
-            .peak_strain
-            .iter()
-            .filter(|strain| **strain > 0.003);
+        let beyond = panels[0].peak_strain.iter().filter(|strain| **strain > 0.003);
         assert_eq!(summary.yielding, beyond.count() as u64);
-        assert!(
-            0 < summary.yielding && summary.yielding < summary.refined,
-            "{more}"
-        );
+        assert!(0 < summary.yielding && summary.yielding < summary.refined, "{more}");
         let channels: Channels = "regime,peak_strain".parse().unwrap();
         let plain = scene(more, None);
-        let plan = Plan::new(&plain)
-            .unwrap()
-            .with_channels(channels, &plain)
-            .unwrap();
+        let plan = Plan::new(&plain).unwrap().with_channels(channels, &plain).unwrap();
         assert_eq!(compute_as(&plain, &plan, None).0.yielding, 0);
     }
 }
@@ -294,18 +250,10 @@ fn strains_are_computed_on_demand() {
     assert_eq!(format!("{with:?}"), format!("{without:?}"));
     // Without other channels of states, the strains are the same.
     let channels: Channels = "regime,peak_strain".parse().unwrap();
-    let plan = Plan::new(&plain)
-        .unwrap()
-        .with_channels(channels, &plain)
-        .unwrap();
+    let plan = Plan::new(&plain).unwrap().with_channels(channels, &plain).unwrap();
     let alone = compute_as(&plain, &plan, None).1.remove(0);
     assert!(alone.channel(Channel::Force).is_empty());
-    let bits = |strains: &[f32]| {
-        strains
-            .iter()
-            .map(|strain| strain.to_bits())
-            .collect::<Vec<_>>()
-    };
+    let bits = |strains: &[f32]| strains.iter().map(|strain| strain.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&alone.peak_strain), bits(&strains));
     let few = Plan::new(&plain).unwrap();
     assert!(plan.bytes > few.bytes && few.channels == Channels::STANDARD);
@@ -315,17 +263,11 @@ fn strains_are_computed_on_demand() {
 #[test]
 fn every_whisker_of_a_scene_has_its_yield_strain() {
     let scene = scene(CONE, Some(0.0125));
-    let swept = scene
-        .to_builder()
-        .sweep(Parameter::LengthMm, [15.0, 20.0])
-        .build()
-        .unwrap();
+    let swept = scene.to_builder().sweep(Parameter::LengthMm, [15.0, 20.0]).build().unwrap();
     let rows = ["a", "b"].map(WhiskerRow::new);
     let table = scene.to_builder().whiskers(rows).build().unwrap();
     for scene in [&swept, &table] {
-        let strains = scene
-            .whiskers()
-            .map(|swept| swept.unwrap().whisker.yield_strain);
+        let strains = scene.whiskers().map(|swept| swept.unwrap().whisker.yield_strain);
         assert_eq!(strains.collect::<Vec<_>>(), [Some(0.0125); 2]);
         let one = scene.of_whisker(1).unwrap();
         assert_eq!(one.whisker.yield_strain, Some(0.0125));
@@ -336,9 +278,7 @@ fn every_whisker_of_a_scene_has_its_yield_strain() {
     let rows = [("a", 0.02), ("b", f64::NAN)];
     let rows = rows.map(|(name, strain)| WhiskerRow::new(name).yield_strain(strain));
     let table = scene.to_builder().whiskers(rows).build().unwrap();
-    let strains = table
-        .whiskers()
-        .map(|swept| swept.unwrap().whisker.yield_strain);
+    let strains = table.whiskers().map(|swept| swept.unwrap().whisker.yield_strain);
     assert_eq!(strains.collect::<Vec<_>>(), [Some(0.02), None]);
     let one = table.of_whisker(0).unwrap();
     assert_eq!(one.whisker.yield_strain, Some(0.02));
@@ -349,14 +289,6 @@ fn every_whisker_of_a_scene_has_its_yield_strain() {
     assert!(refused.unwrap_err().to_string().contains(why));
     let text = scene.to_toml_with(&[(Parameter::LengthMm, 21.0)]).unwrap();
     assert!(text.contains("yield_strain = 0.0125"), "{text}");
-    let why = scene
-        .to_builder()
-        .yield_strain(0.0)
-        .build()
-        .unwrap_err()
-        .to_string();
-    assert!(
-        why.contains("whisker.yield_strain = 0: must be more than 0 and at most 1"),
-        "{why}"
-    );
+    let why = scene.to_builder().yield_strain(0.0).build().unwrap_err().to_string();
+    assert!(why.contains("whisker.yield_strain = 0: must be more than 0 and at most 1"), "{why}");
 }

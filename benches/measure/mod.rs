@@ -23,10 +23,7 @@ impl Group {
     pub fn new(name: &'static str) -> Self {
         let mut arguments = std::env::args().skip(1);
         let filter = arguments.find(|text| !text.starts_with('-'));
-        Self {
-            name,
-            filter: filter.unwrap_or_default(),
-        }
+        Self { name, filter: filter.unwrap_or_default() }
     }
 
     /// Prints the median time of `function` in microseconds.
@@ -64,9 +61,7 @@ impl Group {
         // The first run fills caches.
         let once = seconds(1).min(seconds(1)).max(1e-9);
         let runs = (LEAST_TIME.as_secs_f64() / once).ceil().max(1.0) as u32;
-        let mut samples: Vec<f64> = (0..SAMPLES)
-            .map(|_| seconds(runs) / f64::from(runs))
-            .collect();
+        let mut samples: Vec<f64> = (0..SAMPLES).map(|_| seconds(runs) / f64::from(runs)).collect();
         samples.sort_by(f64::total_cmp);
         Some((name, 1e6 * samples[SAMPLES / 2]))
     }

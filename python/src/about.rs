@@ -25,27 +25,12 @@ pub fn arithmetic() -> &'static str {
 
 /// Returns the name, the unit, the name of the sweep axis and the title of each parameter; no axis where a sweep cannot vary it.
 #[pyfunction]
-pub fn parameters() -> Vec<(
-    &'static str,
-    &'static str,
-    Option<&'static str>,
-    &'static str,
-)> {
-    let axis = |parameter: Parameter| {
-        Parameter::SWEPT
-            .contains(&parameter)
-            .then(|| parameter.axis())
-    };
+pub fn parameters() -> Vec<(&'static str, &'static str, Option<&'static str>, &'static str)> {
+    let axis =
+        |parameter: Parameter| Parameter::SWEPT.contains(&parameter).then(|| parameter.axis());
     let all = Parameter::ALL.into_iter();
-    all.map(|parameter| {
-        (
-            parameter.name(),
-            parameter.unit(),
-            axis(parameter),
-            parameter.title(),
-        )
-    })
-    .collect()
+    all.map(|parameter| (parameter.name(), parameter.unit(), axis(parameter), parameter.title()))
+        .collect()
 }
 
 /// Returns name, unit and value of each variable of a scene's detachments; the distance has no value.
@@ -56,8 +41,7 @@ pub fn variables(scene: &CheckedScene) -> Vec<(String, &'static str, f64)> {
         _ => f64::NAN,
     };
     let all = Variable::of_detachments(&scene.0).into_iter();
-    all.map(|variable| (variable.name(), variable.unit(), value(variable)))
-        .collect()
+    all.map(|variable| (variable.name(), variable.unit(), value(variable))).collect()
 }
 
 /// Returns the names of all channels of maps.
@@ -128,16 +112,11 @@ pub fn axis_title(name: &str, is_end: bool) -> String {
 /// Returns the colours of lines by what they show; the series are `0` to `6`.
 #[pyfunction]
 pub fn inks() -> BTreeMap<String, String> {
-    let named = [
-        ("slip-off", Ink::Black),
-        ("pull-off", Ink::Blue),
-        ("background", Ink::Grey),
-    ]
-    .map(|(name, ink)| (name.to_owned(), ink));
+    let named = [("slip-off", Ink::Black), ("pull-off", Ink::Blue), ("background", Ink::Grey)]
+        .map(|(name, ink)| (name.to_owned(), ink));
     let series = (0..7).map(|index| (index.to_string(), Ink::Series(index)));
     let all = named.into_iter().chain(series);
-    all.map(|(name, ink)| (name, hexadecimal(ink.rgb())))
-        .collect()
+    all.map(|(name, ink)| (name, hexadecimal(ink.rgb()))).collect()
 }
 
 fn hexadecimal([red, green, blue]: [u8; 3]) -> String {

@@ -26,11 +26,7 @@ pub fn named<T: Copy, const N: usize>(
     let value = values.into_iter().find(|value| name(*value) == given);
     value.ok_or_else(|| {
         let names = values.map(|value| format!("'{}'", name(value)));
-        refused(
-            argument,
-            given,
-            &format!("must be one of {}", names.join(", ")),
-        )
+        refused(argument, given, &format!("must be one of {}", names.join(", ")))
     })
 }
 
@@ -42,9 +38,7 @@ pub fn table(
     columns: Vec<(String, String)>,
     known: &[&str],
 ) -> Result<CsvTable, CsvError> {
-    let names = columns
-        .into_iter()
-        .map(|(expected, in_file)| ColumnName { expected, in_file });
+    let names = columns.into_iter().map(|(expected, in_file)| ColumnName { expected, in_file });
     CsvTable::parse(text, origin)?.renamed(&names.collect::<Vec<_>>(), known)
 }
 
@@ -53,11 +47,7 @@ pub fn parameter(argument: &str, name: &str) -> PyResult<Parameter> {
     Parameter::named(name).ok_or_else(|| {
         let known = Parameter::ALL.map(Parameter::name);
         let hint = Parameter::suggested(name).unwrap_or_else(|| did_you_mean(name, known));
-        refused(
-            argument,
-            name,
-            &format!("must be one of {}{hint}", known.join(", ")),
-        )
+        refused(argument, name, &format!("must be one of {}{hint}", known.join(", ")))
     })
 }
 
@@ -81,11 +71,7 @@ fn engine(name: &str) -> PyResult<MapEngine> {
         "cpu" => Ok(MapEngine::Cpu),
         "spectral" => Ok(MapEngine::Spectral),
         "gpu" => Ok(MapEngine::Gpu(Precision::F32)),
-        _ => Err(refused(
-            "engine",
-            name,
-            "must be 'auto', 'cpu', 'spectral' or 'gpu'",
-        )),
+        _ => Err(refused("engine", name, "must be 'auto', 'cpu', 'spectral' or 'gpu'")),
     }
 }
 

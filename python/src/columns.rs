@@ -30,12 +30,7 @@ const TRUTHS: [&str; 1] = ["yields"];
 const ROWS_AT_ONCE: usize = 1 << 13;
 
 /// Name, values, unit and meaning of a column.
-pub type Column<'py> = (
-    &'static str,
-    Bound<'py, PyAny>,
-    Option<&'static str>,
-    String,
-);
+pub type Column<'py> = (&'static str, Bound<'py, PyAny>, Option<&'static str>, String);
 
 /// Values of a column, `[row]`.
 enum Values {
@@ -100,8 +95,7 @@ impl Table {
         cancel: &AtomicBool,
     ) -> Self {
         if let Some(marks) = marks {
-            self.columns
-                .extend(Self::new(&marks, about, cancel).columns);
+            self.columns.extend(Self::new(&marks, about, cancel).columns);
         }
         self
     }

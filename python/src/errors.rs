@@ -29,11 +29,7 @@ pub fn of_scene(py: Python<'_>, why: &scene::SceneError) -> PyErr {
     let text = text.strip_prefix("error: ").unwrap_or(&text).to_owned();
     let exception = SceneError::new_err(text);
     let instance = exception.value(py);
-    let attributes = [
-        ("key", why.key()),
-        ("value", why.value()),
-        ("allowed", why.allowed()),
-    ];
+    let attributes = [("key", why.key()), ("value", why.value()), ("allowed", why.allowed())];
     for (name, value) in attributes {
         if let Err(why) = instance.setattr(name, value) {
             return why;

@@ -62,10 +62,8 @@ pub fn fit<'py>(
         single(&scene.0)?;
     }
     let loss = arguments::named("loss", loss, FitLoss::ALL, FitLoss::name)?;
-    let free: PyResult<Vec<Parameter>> = free
-        .iter()
-        .map(|name| arguments::parameter("free", name))
-        .collect();
+    let free: PyResult<Vec<Parameter>> =
+        free.iter().map(|name| arguments::parameter("free", name)).collect();
     let free = free?;
     let job = |cancel: &Arc<AtomicBool>| {
         let fit = fit_until(&scene.0, &points, &free, loss, cancel)?;
@@ -78,11 +76,7 @@ pub fn fit<'py>(
         FitError::NotConverged(_) => PyRuntimeError::new_err(why.to_string()),
         _ => refused(why.to_string()),
     })?;
-    let noted = [
-        points.missing(),
-        points.crossed(),
-        fit.moved_start(&scene.0, &points),
-    ];
+    let noted = [points.missing(), points.crossed(), fit.moved_start(&scene.0, &points)];
     let warnings = noted.into_iter().flatten().chain(fit.warnings(&points));
     let warnings = warnings.collect();
     let estimates = fit.estimates.iter().map(|estimate| {
@@ -97,16 +91,8 @@ pub fn fit<'py>(
     let pulls = fit.pulls.iter().map(|pull| {
         let name = pull.parameter.name();
         let mut rows = fit.comparison.rows.iter();
-        let index = rows
-            .position(|row| row.line == pull.line)
-            .unwrap_or_default();
-        (
-            index,
-            pull.residual_deg,
-            pull.weight,
-            name,
-            pull.standard_errors,
-        )
+        let index = rows.position(|row| row.line == pull.line).unwrap_or_default();
+        (index, pull.residual_deg, pull.weight, name, pull.standard_errors)
     });
     Ok(FitResult {
         pulls: pulls.collect(),
@@ -124,14 +110,7 @@ pub fn fit<'py>(
 }
 
 /// Solutions, range, value, kind and reached quantity of the ends over the range, and warnings.
-type DesignResult = (
-    Vec<f64>,
-    [f64; 2],
-    Vec<f64>,
-    Vec<String>,
-    Vec<Option<f64>>,
-    Vec<String>,
-);
+type DesignResult = (Vec<f64>, [f64; 2], Vec<f64>, Vec<String>, Vec<Option<f64>>, Vec<String>);
 
 /// Varied number by its name, with limits.
 type Varied = (String, Option<[f64; 2]>);
@@ -141,13 +120,7 @@ type Nearest = (Vec<f64>, Vec<f64>, Vec<bool>);
 
 /// Solutions `[solution][variable]`, ranges `[variable]`, whether the targets do not determine them, what is nearest without a solution, and
 /// warnings.
-type DesignsResult = (
-    Vec<Vec<f64>>,
-    Vec<[f64; 2]>,
-    bool,
-    Option<Nearest>,
-    Vec<String>,
-);
+type DesignsResult = (Vec<Vec<f64>>, Vec<[f64; 2]>, bool, Option<Nearest>, Vec<String>);
 
 /// Returns the warnings of the whiskers of the solutions of a design, and one for each that yields.
 fn solution_warnings(
@@ -187,19 +160,12 @@ fn varied(
     keeps_taper: bool,
 ) -> PyResult<(DesignVaried, f64)> {
     let variable = |(name, limits): Varied| {
-        let variable = name
-            .parse()
-            .map_err(|must: String| arguments::refused("parameter", &name, &must));
-        Ok(DesignVariable {
-            variable: variable?,
-            limits,
-        })
+        let variable =
+            name.parse().map_err(|must: String| arguments::refused("parameter", &name, &must));
+        Ok(DesignVariable { variable: variable?, limits })
     };
     let variables = variables.into_iter().map(variable);
-    let mut varied: DesignVaried = variables
-        .collect::<PyResult<Vec<_>>>()?
-        .into_iter()
-        .collect();
+    let mut varied: DesignVaried = variables.collect::<PyResult<Vec<_>>>()?.into_iter().collect();
     varied.keeps_taper = keeps_taper;
     let distances = &scene.grid.distance_mm;
     let distance_mm = match distance {
@@ -237,12 +203,7 @@ pub fn design(
     single(&scene.0)?;
     let (varied, distance_mm) = varied(&scene.0, vec![parameter], distance, keeps_taper)?;
     let goal = goals(goal)?;
-    let target = DesignTarget {
-        distance_mm,
-        side: target_side(goal, value, side)?,
-        goal,
-        value,
-    };
+    let target = DesignTarget { distance_mm, side: target_side(goal, value, side)?, goal, value };
     let push = (target.side, distance_mm);
     let job = |cancel: &Arc<AtomicBool>| {
         let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
@@ -305,13 +266,7 @@ pub fn designs(
     let (found, warnings) = found.map_err(|why| of_design(py, why))?;
     let nearest = found.nearest;
     let nearest = nearest.map(|nearest| (nearest.values, nearest.reached, nearest.is_at_limit));
-    Ok((
-        found.solutions,
-        found.ranges,
-        found.is_undetermined,
-        nearest,
-        warnings,
-    ))
+    Ok((found.solutions, found.ranges, found.is_undetermined, nearest, warnings))
 }
 
 fn goals(name: &str) -> PyResult<DesignGoal> {

@@ -36,11 +36,7 @@ impl ComputedMap {
         let warning = spectral_warning(scene, options.engine);
         let open = |_: &_| whiskmap::lazy_map(scene, options);
         let map = threads::run(py, threads, |_| Ok(()), open)?;
-        Ok(Self {
-            map: map.map_err(|why| of_front(&why))?,
-            threads,
-            warning,
-        })
+        Ok(Self { map: map.map_err(|why| of_front(&why))?, threads, warning })
     }
 
     /// Names of the channels of the map.

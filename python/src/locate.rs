@@ -30,13 +30,9 @@ pub fn locate<'py>(
     single(scene)?;
     without_friction(scene, "the force is taken as normal to the whisker")?;
     let table = arguments::table(readings, origin, columns, &BaseReadings::COLUMNS);
-    let read = table
-        .and_then(|table| BaseReadings::of(&table))
-        .map_err(|why| refused(&why))?;
-    let deviations = deviations.map(|(moment_nnm, force_un)| SensorDeviations {
-        moment_nnm,
-        force_un,
-    });
+    let read = table.and_then(|table| BaseReadings::of(&table)).map_err(|why| refused(&why))?;
+    let deviations =
+        deviations.map(|(moment_nnm, force_un)| SensorDeviations { moment_nnm, force_un });
     let job = |cancel: &Arc<AtomicBool>| {
         let locator = Locator::new(&scene.first_whisker().whisker, &scene.pole);
         let located = locator.locate_until(&read.readings, deviations, cancel);

@@ -23,12 +23,7 @@ enum ChannelArray {
 type ChannelArrays = Vec<(&'static str, ChannelArray)>;
 
 /// Names and arrays of channels, the name of the engine, its hardware, and warnings.
-type MapArrays<'py> = (
-    Vec<(&'static str, Bound<'py, PyAny>)>,
-    String,
-    String,
-    Vec<String>,
-);
+type MapArrays<'py> = (Vec<(&'static str, Bound<'py, PyAny>)>, String, String, Vec<String>);
 
 /// Computes the map of `scene`. `progress` is called with the numbers of finished cells and of all cells.
 #[pyfunction]
@@ -43,14 +38,11 @@ pub fn map<'py>(
 ) -> PyResult<MapArrays<'py>> {
     let scene = &scene.0;
     let mut options = arguments::options(engine, tolerance_deg, channels)?;
-    let channels = options
-        .channels
-        .unwrap_or_else(|| Channels::of_scene(scene));
+    let channels = options.channels.unwrap_or_else(|| Channels::of_scene(scene));
     let done = Arc::new(AtomicUsize::new(0));
     let cells = Arc::clone(&done);
-    options.on_progress = Some(Arc::new(move |finished, _| {
-        cells.store(finished, Ordering::Relaxed)
-    }));
+    options.on_progress =
+        Some(Arc::new(move |finished, _| cells.store(finished, Ordering::Relaxed)));
     let plan = Plan::in_memory(scene).map_err(|why| of_plan(&why))?;
     let spectral = spectral_warning(scene, options.engine);
     let all = plan.cells;
@@ -78,12 +70,7 @@ pub fn map<'py>(
         };
         (name, array)
     });
-    Ok((
-        arrays.collect(),
-        summary.engine.engine,
-        summary.engine.adapter,
-        warnings,
-    ))
+    Ok((arrays.collect(), summary.engine.engine, summary.engine.adapter, warnings))
 }
 
 /// Returns the warning about the spectral engine with measured radii.

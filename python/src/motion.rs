@@ -25,14 +25,7 @@ use whiskmap::whisk::{
 use whiskmap::yields::StrainMark;
 
 /// Columns of samples and events, lost and dissipated energy in nJ, angle of the first touch on CF in degrees, and warnings.
-type WhiskColumns<'py> = (
-    Vec<Column<'py>>,
-    Vec<Column<'py>>,
-    f64,
-    f64,
-    f64,
-    Vec<String>,
-);
+type WhiskColumns<'py> = (Vec<Column<'py>>, Vec<Column<'py>>, f64, f64, f64, Vec<String>);
 
 /// Times in s and angles of the base in degrees, `[sample]`.
 type TimesAndAngles<'py> = (PyReadonlyArray1<'py, f64>, PyReadonlyArray1<'py, f64>);
@@ -180,10 +173,7 @@ pub fn force<'py>(
         .map_err(|why| refused(&why))?;
     let estimated = read.baseline(&whisker, baseline_s);
     let baseline = estimated.map_err(|why| refused(&why))?;
-    let deviations = scene
-        .uncertainty
-        .as_ref()
-        .map(|deviations| deviations.frames);
+    let deviations = scene.uncertainty.as_ref().map(|deviations| deviations.frames);
     let options = ForceOptions {
         baseline,
         deviations: deviations.unwrap_or_default(),
@@ -221,8 +211,6 @@ pub fn refused(why: &impl std::fmt::Display) -> PyErr {
 pub fn without_friction(scene: &Scene, because: &str) -> PyResult<()> {
     match scene.pole.friction {
         0.0 => Ok(()),
-        friction => Err(refused(&format!(
-            "friction = {friction}: must be 0, because {because}"
-        ))),
+        friction => Err(refused(&format!("friction = {friction}: must be 0, because {because}"))),
     }
 }

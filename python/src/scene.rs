@@ -42,12 +42,7 @@ type SurfaceTuple = (f64, f64, f64, f64, f64, u32);
 type Measured = (Vec<[f64; 2]>, bool);
 
 /// Row of a table of whiskers: name, numbers by name, measured rows, and traced points.
-type RowTuple = (
-    String,
-    Vec<(String, f64)>,
-    Option<Vec<[f64; 2]>>,
-    Option<Vec<[f64; 2]>>,
-);
+type RowTuple = (String, Vec<(String, f64)>, Option<Vec<[f64; 2]>>, Option<Vec<[f64; 2]>>);
 
 /// Description of a scene: title, numbers by name, measured rows, traced points, axes by name, standard deviations by name, surface, table
 /// of whiskers, and name.
@@ -148,9 +143,8 @@ impl CheckedScene {
     /// Returns the description from which [`CheckedScene::build`] makes an equal scene.
     fn description(&self) -> Description {
         let builder = self.0.to_builder();
-        let parameters = Parameter::ALL
-            .into_iter()
-            .filter(|parameter| *parameter != Parameter::Taper);
+        let parameters =
+            Parameter::ALL.into_iter().filter(|parameter| *parameter != Parameter::Taper);
         let numbers = parameters.filter_map(|parameter| {
             Some((parameter.name().to_owned(), builder.number(parameter)?))
         });
@@ -160,15 +154,12 @@ impl CheckedScene {
         (
             self.0.title.clone(),
             given.collect(),
-            self.0
-                .measured_rows()
-                .map(|rows| (rows.to_vec(), self.0.smooth_radii().is_some())),
+            self.0.measured_rows().map(|rows| (rows.to_vec(), self.0.smooth_radii().is_some())),
             self.0.traced().map(|shape| {
                 let degree = (!shape.is_degree_chosen).then_some(shape.degree);
                 (shape.points_mm.clone(), degree)
             }),
-            axes.map(|(name, values)| (name.to_owned(), axis_tuple(values)))
-                .collect(),
+            axes.map(|(name, values)| (name.to_owned(), axis_tuple(values))).collect(),
             self.0.uncertainty.as_ref().map(deviations_by_name),
             self.0.surface.map(|surface| {
                 (
@@ -188,9 +179,7 @@ impl CheckedScene {
     /// Returns the names of the rows of the table that have no whisker, with the reasons.
     fn refused(&self) -> Vec<(String, String)> {
         let refused = self.0.refused();
-        refused
-            .map(|(name, reason)| (name.to_owned(), reason.to_owned()))
-            .collect()
+        refused.map(|(name, reason)| (name.to_owned(), reason.to_owned())).collect()
     }
 
     /// Returns the scene with the whisker `name` of the table alone.
@@ -292,15 +281,11 @@ fn whisker_row((name, numbers, rows, points): RowTuple) -> PyResult<WhiskerRow> 
 fn row_tuple(row: &WhiskerRow) -> RowTuple {
     let numbers = row.numbers().iter();
     let numbers = numbers.map(|(parameter, value)| (parameter.name(), *value));
-    let yield_strain = row
-        .given_yield_strain()
-        .map(|strain| (YIELD_STRAIN, strain));
+    let yield_strain = row.given_yield_strain().map(|strain| (YIELD_STRAIN, strain));
     let numbers = numbers.chain(yield_strain);
     (
         row.name().to_owned(),
-        numbers
-            .map(|(name, value)| (name.to_owned(), value))
-            .collect(),
+        numbers.map(|(name, value)| (name.to_owned(), value)).collect(),
         row.measured_rows().map(<[_]>::to_vec),
         row.points_mm().map(<[_]>::to_vec),
     )
@@ -331,17 +316,8 @@ fn axis_values(name: &str, values: AxisTuple) -> PyResult<AxisValues> {
 fn axis_tuple(values: &AxisValues) -> AxisTuple {
     match values {
         AxisValues::List(list) => AxisTuple::List(list.clone()),
-        AxisValues::Range {
-            from,
-            to,
-            count,
-            scale,
-        } => {
-            let scale = if *scale == AxisScale::Log {
-                "log"
-            } else {
-                "linear"
-            };
+        AxisValues::Range { from, to, count, scale } => {
+            let scale = if *scale == AxisScale::Log { "log" } else { "linear" };
             AxisTuple::Range(*from, *to, *count, scale.to_owned())
         }
     }
@@ -350,11 +326,10 @@ fn axis_tuple(values: &AxisValues) -> AxisTuple {
 /// Returns the parameter that a sweep axis of this name varies.
 fn swept(name: &str) -> PyResult<Parameter> {
     let mut all = Parameter::SWEPT.into_iter();
-    all.find(|parameter| parameter.axis() == name)
-        .ok_or_else(|| {
-            let known = Parameter::SWEPT.map(Parameter::axis).join(", ");
-            refused("grid.sweep", name, &format!("must be one of {known}"))
-        })
+    all.find(|parameter| parameter.axis() == name).ok_or_else(|| {
+        let known = Parameter::SWEPT.map(Parameter::axis).join(", ");
+        refused("grid.sweep", name, &format!("must be one of {known}"))
+    })
 }
 
 fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
@@ -363,9 +338,7 @@ fn uncertainty(by_name: &BTreeMap<String, f64>) -> PyResult<Deviations> {
         if name == PROFILE_RADIUS {
             deviations.profile_radius_um = Some(*deviation);
         } else if !deviations.frames.set(name, *deviation) {
-            deviations
-                .parameters
-                .push((parameter("uncertainty", name)?, *deviation));
+            deviations.parameters.push((parameter("uncertainty", name)?, *deviation));
         }
     }
     Ok(deviations)
@@ -376,9 +349,7 @@ fn deviations_by_name(deviations: &Deviations) -> BTreeMap<String, f64> {
         .parameters
         .iter()
         .map(|(parameter, deviation)| (parameter.name().to_owned(), *deviation));
-    let rows = deviations
-        .profile_radius_um
-        .map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));
+    let rows = deviations.profile_radius_um.map(|deviation| (PROFILE_RADIUS.to_owned(), deviation));
     let names = FrameDeviations::NAMES.into_iter();
     let named = names.zip(deviations.frames.values());
     let frames = named.filter_map(|(name, deviation)| Some((name.to_owned(), deviation?)));

@@ -8,13 +8,7 @@ use std::path::PathBuf;
 use whiskmap::store::{ChannelValues, MapSlice, MapSource};
 
 /// Attributes of a stored map that every reader needs.
-const ATTRIBUTES: [&str; 5] = [
-    "whiskmap_version",
-    "engine",
-    "arithmetic",
-    "tolerances",
-    "scene",
-];
+const ATTRIBUTES: [&str; 5] = ["whiskmap_version", "engine", "arithmetic", "tolerances", "scene"];
 
 /// An EXR map or a Zarr store that is open for reading.
 #[pyclass(frozen, module = "whiskmap._whiskmap")]

@@ -58,19 +58,12 @@ fn pool(threads: Option<ThreadCount>) -> PyResult<Arc<ThreadPool>> {
         // The threads of the parent's pools do not exist here, so dropping its pools could wait for ever.
         std::mem::forget(all.replace(ThreadPools { process, pools }));
     }
-    let pools = &mut all
-        .get_or_insert_with(|| ThreadPools {
-            process,
-            pools: HashMap::new(),
-        })
-        .pools;
+    let pools =
+        &mut all.get_or_insert_with(|| ThreadPools { process, pools: HashMap::new() }).pools;
     if let Some(pool) = pools.get(&threads) {
         return Ok(Arc::clone(pool));
     }
-    let pool = ThreadPoolBuilder::new()
-        .num_threads(threads)
-        .stack_size(STACK)
-        .build();
+    let pool = ThreadPoolBuilder::new().num_threads(threads).stack_size(STACK).build();
     let pool = Arc::new(
         pool.map_err(|why| PyRuntimeError::new_err(format!("threads = {threads}: {why}")))?,
     );

@@ -96,10 +96,8 @@ pub fn shape<'py>(
         let push = push_angle_deg.to_radians();
         let (branch, state) = Branch::at_push(pushed, distance_mm, push, stable)?;
         let shape = branch.shape(&state, points);
-        let marks = YieldMark::of_rows(
-            &scene.whisker,
-            shape.points.iter().map(|point| point.strain),
-        );
+        let marks =
+            YieldMark::of_rows(&scene.whisker, shape.points.iter().map(|point| point.strain));
         let point_table = Table::new(&shape.points, ShapePoint::COLUMNS, cancel);
         let point_table = point_table.marked(marks, YieldMark::COLUMNS, cancel);
         let mark = YieldMark::of_rows(&scene.whisker, [shape.state.peak_strain]);

@@ -117,9 +117,6 @@ impl TrackedFilm {
     /// Returns the points of a frame from base to tip, `[point][x, y]` in mm.
     fn shape(&self, frame: u64) -> PyResult<Vec<[f64; 2]>> {
         let points = self.0.shape(frame).map_err(|why| refused(&why))?;
-        Ok(points
-            .iter()
-            .map(|point| [point.x_mm, point.y_mm])
-            .collect())
+        Ok(points.iter().map(|point| [point.x_mm, point.y_mm]).collect())
     }
 }

@@ -35,10 +35,7 @@ const SAFETY: f64 = 4.0;
 /// If there is none, the finest rung with its estimate.
 pub fn cheapest(scene: &Scene, sides: &[Side], tolerance_deg: f64) -> Result<Accuracy, Accuracy> {
     let sample = SceneSample::new(scene, sides);
-    let mut tried = Accuracy {
-        resolution: Resolution::FINE,
-        error_deg: f64::INFINITY,
-    };
+    let mut tried = Accuracy { resolution: Resolution::FINE, error_deg: f64::INFINITY };
     for resolution in Resolution::LADDER {
         tried = Accuracy {
             resolution,

@@ -57,11 +57,7 @@ impl SceneSample {
                 let crossings = sheet.crossings.iter().flatten();
                 let ends = crossings
                     .filter(|end| end.is_sound() && !end.is_at_touch())
-                    .map(|end| Point {
-                        tau: end.tau,
-                        load: end.load,
-                        edge: Some(end.edge),
-                    });
+                    .map(|end| Point { tau: end.tau, load: end.load, edge: Some(end.edge) });
                 let points = solved.chain(ends).collect();
                 (rod, points)
             })
@@ -116,11 +112,7 @@ fn worse(a: f64, b: f64) -> f64 {
 /// Returns the whiskers at some values of the sweep's axes: at their ends alone if there are more than two axes. All whiskers of a table count.
 fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
     let mut few = SceneData::clone(scene);
-    let most = if few.grid.sweep.len() > 2 {
-        2
-    } else {
-        WHISKERS
-    };
+    let most = if few.grid.sweep.len() > 2 { 2 } else { WHISKERS };
     for axis in &mut few.grid.sweep {
         // Whiskers of a table are in no order.
         if axis.variable.parameter().is_some() {
@@ -133,7 +125,5 @@ fn whiskers(scene: &Scene) -> Vec<SweptWhisker> {
 /// Returns at most `most` values, with the first and the last.
 fn spread(values: &[f64], most: usize) -> Vec<f64> {
     let (last, count) = (values.len() - 1, values.len().min(most));
-    (0..count)
-        .map(|i| values[i * last / (count - 1).max(1)])
-        .collect()
+    (0..count).map(|i| values[i * last / (count - 1).max(1)]).collect()
 }

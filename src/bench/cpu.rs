@@ -31,22 +31,14 @@ pub fn measure(
         let name = format!("cpu {unit}");
         on_step(&format!("{name}, {threads} threads"));
         let pool = pool(threads)?;
-        let solver = |resolution| Solver {
-            unit,
-            resolution,
-            tolerance: TOLERANCE,
-        };
+        let solver = |resolution| Solver { unit, resolution, tolerance: TOLERANCE };
         let start = Instant::now();
         pool.install(|| {
             solver(Resolution::FINE).solve(task.effects, &task.rods, &task.targets[..1])
         });
         let first_result_s = start.elapsed().as_secs_f64();
-        let engine = BenchEngine {
-            name,
-            threads: Some(threads),
-            adapter: unit.to_string(),
-            first_result_s,
-        };
+        let engine =
+            BenchEngine { name, threads: Some(threads), adapter: unit.to_string(), first_result_s };
         let row = |resolution| row(task, runs, &engine, solver(resolution));
         let rows = Resolution::LADDER.map(|resolution| pool.install(|| row(resolution)));
         report.rows.extend(rows);
@@ -63,10 +55,7 @@ fn row(task: &Task, runs: usize, engine: &BenchEngine, solver: Solver) -> Measur
     });
     let resolution = solver.resolution;
     let trajectories = hits.iter().map(|hit| f64::from(hit.steps)).sum();
-    let rung = Rung {
-        integrator: "nystrom8",
-        steps: resolution.least,
-    };
+    let rung = Rung { integrator: "nystrom8", steps: resolution.least };
     let stages = [0.0, 1e3 * seconds.median, 0.0, 0.0];
     let errors = task.errors(&places(&hits));
     Measurement::new(engine, rung, seconds, stages, Some(trajectories), errors)

@@ -31,11 +31,7 @@ pub fn candidates() -> Vec<Candidate> {
                 1 => format!("gpu {precision}"),
                 _ => format!("gpu {adapter} {precision}"),
             };
-            candidates.push(Candidate {
-                name,
-                adapter,
-                precision,
-            });
+            candidates.push(Candidate { name, adapter, precision });
         }
     }
     candidates
@@ -123,10 +119,7 @@ fn measure_one(
     }
     // The first two runs warm up.
     let stages = of_runs.map(|ms| median(ms.into_iter().skip(2)));
-    let rung = Rung {
-        integrator: "chebyshev",
-        steps: loads(&requests) as u32,
-    };
+    let rung = Rung { integrator: "chebyshev", steps: loads(&requests) as u32 };
     let errors = task.only(&targets).errors(&points);
     let row = Measurement::new(&engine, rung, seconds, stages, None, errors);
     report.engines.push(engine);

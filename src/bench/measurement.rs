@@ -53,11 +53,7 @@ impl Measurement {
             threads: engine.threads,
             rung,
             seconds,
-            stages_ms: STAGES
-                .map(str::to_owned)
-                .into_iter()
-                .zip(stages_ms)
-                .collect(),
+            stages_ms: STAGES.map(str::to_owned).into_iter().zip(stages_ms).collect(),
             us_per_state: 1e6 * seconds.median / states,
             states_per_s: states / seconds.median,
             trajectories_per_s: trajectories.map(|count| count / seconds.median),
@@ -89,7 +85,5 @@ impl fmt::Display for Rung {
 pub(super) fn medians(runs: &[StageTimes]) -> StageTimes {
     let stages = runs.first().into_iter().flat_map(BTreeMap::keys);
     let of_runs = |stage: &String| median(runs.iter().map(|run| run[stage]));
-    stages
-        .map(|stage| (stage.clone(), of_runs(stage)))
-        .collect()
+    stages.map(|stage| (stage.clone(), of_runs(stage))).collect()
 }

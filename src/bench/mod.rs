@@ -90,18 +90,10 @@ pub struct Effort {
 
 impl Effort {
     /// Effort of measurements whose numbers are quoted.
-    pub const FULL: Self = Self {
-        sample: [512, 128],
-        map_lines: 1024,
-        runs: 7,
-    };
+    pub const FULL: Self = Self { sample: [512, 128], map_lines: 1024, runs: 7 };
 
     /// Effort of quick measurements.
-    pub const QUICK: Self = Self {
-        sample: [256, 64],
-        map_lines: 256,
-        runs: 5,
-    };
+    pub const QUICK: Self = Self { sample: [256, 64], map_lines: 256, runs: 5 };
 }
 
 /// Measures every engine on a sample of `scene`, and calls `on_step` with the name of each next step. `None` if no cell of the sample has a

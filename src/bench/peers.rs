@@ -63,10 +63,7 @@ impl Peers {
     /// # Errors
     /// If the file cannot be read, is longer than 1 MiB, is no such JSON, has a number that is out of range, or has no program.
     pub fn read(path: &Path) -> Result<Self, PeersError> {
-        let error = |what: String| PeersError {
-            path: path.to_owned(),
-            what,
-        };
+        let error = |what: String| PeersError { path: path.to_owned(), what };
         let bytes = read(path, TEXT_MIB);
         let bytes = bytes.map_err(|cause| error(format!("cannot read the file: {cause}")))?;
         Self::parse(&bytes).map_err(error)
@@ -88,10 +85,7 @@ impl Peers {
         if programs.iter().all(|peer| peer.points.is_empty()) {
             return Err("has no program; measure one with benches/peers/run.sh".to_owned());
         }
-        Ok(Self {
-            machine: file.machine,
-            programs,
-        })
+        Ok(Self { machine: file.machine, programs })
     }
 }
 
@@ -142,9 +136,7 @@ mod tests {
             {"microseconds": 9.0, "error_max": 0.0, "kind": "equilibrium"},
             {"microseconds": 1.0, "error_max": 0.0, "kind": "fold"}]}, "solve_bvp": null}"#;
         let peers = Peers::parse(text.as_bytes()).unwrap();
-        let [heyoka, auto] = &peers.programs[..] else {
-            panic!("{peers:?}")
-        };
+        let [heyoka, auto] = &peers.programs[..] else { panic!("{peers:?}") };
         let wanted = [[1.0, 1e-3], [2.0, 1e-4]].map(|[us, error]| [us, f64::to_degrees(error)]);
         assert_eq!(heyoka.points, wanted);
         assert_eq!(auto.points, [[9.0, LAST_DIGIT.to_degrees()]]);

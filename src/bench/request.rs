@@ -61,9 +61,7 @@ impl SideRequest {
 
 /// Returns the largest number of loads of a net of the `requests`.
 pub fn loads(requests: &[SideRequest]) -> usize {
-    let sides = requests
-        .iter()
-        .flat_map(|request| request.batch.sides.iter());
+    let sides = requests.iter().flat_map(|request| request.batch.sides.iter());
     let nets = sides.filter_map(|side| side.sheet.net());
     nets.map(ValueNet::loads).max().unwrap_or(0)
 }

@@ -111,33 +111,21 @@ fn row(
         });
         Ok::<_, Infallible>(cells.collect::<Vec<_>>())
     });
-    let points: Points = requests
-        .iter()
-        .zip(&cells)
-        .flat_map(|(request, cells)| request.solved(cells))
-        .collect();
+    let points: Points =
+        requests.iter().zip(&cells).flat_map(|(request, cells)| request.solved(cells)).collect();
     if points.is_empty() {
         return None;
     }
     let (targets, points): (Vec<usize>, Vec<(f64, f64)>) = points.into_iter().unzip();
-    let rung = Rung {
-        integrator: "chebyshev",
-        steps: loads(&requests) as u32,
-    };
+    let rung = Rung { integrator: "chebyshev", steps: loads(&requests) as u32 };
     let stages = [0.0, 1e3 * seconds.median, 0.0, 0.0];
     let errors = task.only(&targets).errors(&points);
-    Some(Measurement::new(
-        engine, rung, seconds, stages, None, errors,
-    ))
+    Some(Measurement::new(engine, rung, seconds, stages, None, errors))
 }
 
 /// Times the expansions of all whisker sides.
 fn one_time(requests: &[SideRequest], runs: usize, bound: f64) -> Timing {
-    let sides = || {
-        requests
-            .iter()
-            .flat_map(|request| request.batch.sides.iter())
-    };
+    let sides = || requests.iter().flat_map(|request| request.batch.sides.iter());
     let Ok((seconds, ())) = timed(runs, || {
         for side in sides() {
             black_box(side.net(bound));

@@ -65,10 +65,7 @@ impl Spread {
             let place = (part * values.len().saturating_sub(1) as f64) as usize;
             values.get(place).copied().unwrap_or(0.0)
         };
-        Self {
-            worst: at(1.0),
-            p99: at(0.99),
-        }
+        Self { worst: at(1.0), p99: at(0.99) }
     }
 }
 
@@ -109,19 +106,13 @@ impl Task {
                     })
                 })
                 .unzip();
-        let solver = Solver {
-            unit: Unit::detect(),
-            resolution: EXACT,
-            tolerance: 1e-13,
-        };
+        let solver = Solver { unit: Unit::detect(), resolution: EXACT, tolerance: 1e-13 };
         let exact = solver.solve(effects, &rods, &starts);
         let by_pole = targets.iter().enumerate();
         Self {
             effects,
             exact: places(&exact),
-            by_pole: by_pole
-                .map(|(i, target)| (key(target.rod, target.pole), i))
-                .collect(),
+            by_pole: by_pole.map(|(i, target)| (key(target.rod, target.pole), i)).collect(),
             rods,
             targets,
         }
@@ -146,9 +137,7 @@ impl Task {
     /// Returns the initial conditions at `points`, the `(tau, load)` of every target: `[target]`.
     pub fn conditions(&self, points: &[(f64, f64)]) -> Vec<InitialCondition<'_>> {
         let pairs = self.targets.iter().zip(points);
-        pairs
-            .map(|(target, point)| self.condition(target, *point))
-            .collect()
+        pairs.map(|(target, point)| self.condition(target, *point)).collect()
     }
 
     /// Returns the initial conditions of the exact states: `[target]`.

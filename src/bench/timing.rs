@@ -29,13 +29,7 @@ impl Timing {
             [f64::min, f64::max].map(|pick| seconds.clone().fold(f64::NAN, pick));
         let median = median(seconds);
         let spread = (slowest - fastest) / median;
-        Self {
-            median,
-            fastest,
-            slowest,
-            spread,
-            is_noisy: spread > NOISY,
-        }
+        Self { median, fastest, slowest, spread, is_noisy: spread > NOISY }
     }
 }
 

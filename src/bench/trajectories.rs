@@ -39,14 +39,10 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, on_step: &mut dyn 
     let exact = task.exact_conditions();
     let conditions = exact.iter().cycle().take(AT_LEAST.max(exact.len()));
     let conditions: Vec<InitialCondition> = conditions.copied().collect();
-    let cpu = named(
-        &format!("cpu {}", Unit::detect()),
-        Some(rayon::current_num_threads()),
-    );
+    let cpu = named(&format!("cpu {}", Unit::detect()), Some(rayon::current_num_threads()));
     on_step(&format!("trajectories by {cpu}"));
-    let Ok((seconds, wanted)) = timed(runs, || {
-        Ok::<_, Infallible>(Batch::new(method).shoot::<PlainState>(&conditions))
-    });
+    let Ok((seconds, wanted)) =
+        timed(runs, || Ok::<_, Infallible>(Batch::new(method).shoot::<PlainState>(&conditions)));
     let row = |engine: &str, adapter, seconds: Timing, apart| Trajectories {
         engine: engine.to_owned(),
         adapter,
@@ -71,9 +67,7 @@ pub fn measure(task: &Task, runs: usize, report: &mut Report, on_step: &mut dyn 
         });
         match measured {
             Ok(row) => report.trajectories.push(row),
-            Err(why) => report
-                .failures
-                .push(format!("trajectories by {}: {why}", one.name)),
+            Err(why) => report.failures.push(format!("trajectories by {}: {why}", one.name)),
         }
     }
 }

@@ -23,18 +23,12 @@ pub struct Verdict {
 
 impl fmt::Display for Verdict {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self {
-            faster,
-            slower,
-            times,
-            ..
-        } = self;
+        let Self { faster, slower, times, .. } = self;
         match (self.within_spread, self.is_noisy) {
             (false, _) => write!(f, "{faster} is {times:.1} times as fast as {slower}"),
-            (true, false) => write!(
-                f,
-                "{faster} and {slower} are equally fast, within their spread"
-            ),
+            (true, false) => {
+                write!(f, "{faster} and {slower} are equally fast, within their spread")
+            }
             (true, true) => write!(
                 f,
                 "too noisy to tell whether {faster} or {slower} is faster;\n\
@@ -135,10 +129,8 @@ mod tests {
         };
         let quiet = text(&[1.95, 2.0, 2.05], &[2.0, 2.1, 2.2]);
         assert_eq!(quiet, "cpu and gpu are equally fast, within their spread");
-        for (cpu, gpu) in [
-            ([1.0, 2.0, 3.0], [2.0, 2.1, 2.2]),
-            ([1.95, 2.0, 2.05], [2.0, 2.5, 3.0]),
-        ] {
+        for (cpu, gpu) in [([1.0, 2.0, 3.0], [2.0, 2.1, 2.2]), ([1.95, 2.0, 2.05], [2.0, 2.5, 3.0])]
+        {
             let noisy = text(&cpu, &gpu);
             assert!(noisy.starts_with("too noisy to tell"), "{noisy}");
             assert!(noisy.contains("an idle machine"), "{noisy}");

@@ -97,10 +97,7 @@ pub fn measure(
             let sample = sample.and_then(|sample| {
                 let on_one_thread =
                     one.install(|| one_thread_seconds(scene, &plan, &mut engine))?;
-                Ok(MapRun {
-                    on_one_thread,
-                    ..sample
-                })
+                Ok(MapRun { on_one_thread, ..sample })
             });
             match sample {
                 Ok(sample) => {
@@ -160,10 +157,7 @@ fn run(
         return Err(failure);
     }
     let stages = Stage::ALL.map(|(stage, name)| (name, summary.stage_seconds(stage)));
-    let engine = [
-        ("device", summary.device_seconds),
-        ("waiting", summary.waiting_seconds),
-    ];
+    let engine = [("device", summary.device_seconds), ("waiting", summary.waiting_seconds)];
     let stages = stages.into_iter().chain(engine);
     Ok(MapRun {
         seconds: summary.wall_seconds,

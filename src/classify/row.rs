@@ -62,14 +62,9 @@ impl RowBoundary {
         };
         let sound = crossings.iter().all(Crossing::is_sound);
         let even = (crossings.len() + usize::from(touches)).is_multiple_of(2);
-        let spans = pieces(touches, crossings).map(|(begin, end)| PushSpan {
-            begin: begin.copied(),
-            end: *end,
-        });
-        Self {
-            spans: (sound && even).then(|| spans.collect()),
-            is_complete,
-        }
+        let spans = pieces(touches, crossings)
+            .map(|(begin, end)| PushSpan { begin: begin.copied(), end: *end });
+        Self { spans: (sound && even).then(|| spans.collect()), is_complete }
     }
 
     /// Returns the push span that contains the push angle `push`, a magnitude in radians; `None` without one.

@@ -53,10 +53,7 @@ pub enum Mismatch {
 pub(super) fn check(maps: [&MapSource; 2]) -> Result<(), super::CompareError> {
     check_grids(maps.map(MapSource::grid))?;
     let [first, second] = [maps[0].scene()?, maps[1].scene()?];
-    let scenes = [
-        &first.map_err(Mismatch::Unreadable)?,
-        &second.map_err(Mismatch::Unreadable)?,
-    ];
+    let scenes = [&first.map_err(Mismatch::Unreadable)?, &second.map_err(Mismatch::Unreadable)?];
     Ok(check_scenes(scenes)?)
 }
 
@@ -73,11 +70,7 @@ fn check_grids(grids: [&Grid; 2]) -> Result<(), Mismatch> {
     let differing = axes.find(|(one, other)| one.values != other.values);
     differing.map_or(Ok(()), |(one, other)| {
         let [first, second] = described(&one.values, &other.values);
-        Err(Mismatch::Axis {
-            axis: one.name,
-            first,
-            second,
-        })
+        Err(Mismatch::Axis { axis: one.name, first, second })
     })
 }
 
@@ -101,10 +94,7 @@ fn described(one: &[Coordinate], other: &[Coordinate]) -> [String; 2] {
 
 fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
     // Marks of yielding are no part of a state.
-    let unmarked = |whisker: &Whisker| Whisker {
-        yield_strain: None,
-        ..whisker.clone()
-    };
+    let unmarked = |whisker: &Whisker| Whisker { yield_strain: None, ..whisker.clone() };
     let found = |row: &TableWhisker| match &row.found {
         Ok((whisker, pole)) => Some((unmarked(whisker), *pole)),
         Err(_) => None,
@@ -120,9 +110,7 @@ fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
         return Ok(());
     }
     let is_swept = |parameter| first.grid.axis(parameter).is_some();
-    let all = Parameter::ALL
-        .into_iter()
-        .filter(|parameter| !is_swept(*parameter));
+    let all = Parameter::ALL.into_iter().filter(|parameter| !is_swept(*parameter));
     let mut differing = all.filter(|parameter| parameter.value(first) != parameter.value(second));
     let Some(parameter) = differing.next() else {
         return Err(Mismatch::Shape(if whisker.traced == other_whisker.traced {
@@ -132,9 +120,5 @@ fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
         }));
     };
     let value = |scene| parameter.value(scene).map_or("left out".to_owned(), digits);
-    Err(Mismatch::Scene {
-        name: parameter.name(),
-        first: value(first),
-        second: value(second),
-    })
+    Err(Mismatch::Scene { name: parameter.name(), first: value(first), second: value(second) })
 }

@@ -79,10 +79,10 @@ impl CodeComparison {
 
     /// Names and sorts the pairs.
     pub(super) fn finish(mut self) -> Self {
-        let pairs = self.counts.iter().map(|(codes, cells)| CodePair {
-            names: self.named(*codes),
-            cells: *cells,
-        });
+        let pairs = self
+            .counts
+            .iter()
+            .map(|(codes, cells)| CodePair { names: self.named(*codes), cells: *cells });
         self.pairs = pairs.collect();
         self.pairs.sort_by_key(|pair| std::cmp::Reverse(pair.cells));
         self

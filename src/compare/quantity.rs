@@ -70,11 +70,7 @@ impl QuantityComparison {
     /// Returns a difference as a fraction of the channel's largest value; 0 without values.
     #[must_use]
     pub fn relative(&self, difference: f64) -> f64 {
-        if difference == 0.0 {
-            0.0
-        } else {
-            difference / self.largest_value
-        }
+        if difference == 0.0 { 0.0 } else { difference / self.largest_value }
     }
 
     /// Adds the values of a cell.

@@ -50,9 +50,7 @@ impl Within {
             })
         });
         let codes = codes.map(|code| code.channel);
-        codes
-            .chain(quantities.map(|quantity| quantity.channel))
-            .collect()
+        codes.chain(quantities.map(|quantity| quantity.channel)).collect()
     }
 
     fn named(&self, channel: &str) -> Option<f64> {
@@ -96,10 +94,7 @@ impl FromStr for Within {
                 let found = channel_names().find(|channel| *channel == name.trim());
                 let name = found.ok_or_else(|| {
                     let hint = did_you_mean(name, channel_names());
-                    refused(format!(
-                        "must be one of the channels, {}{hint}",
-                        Channels::STANDARD
-                    ))
+                    refused(format!("must be one of the channels, {}{hint}", Channels::STANDARD))
                 })?;
                 let is_new = absolute.iter().all(|(other, _)| *other != name);
                 absolute.push((name, number));

@@ -35,11 +35,7 @@ pub fn map(scene: &Scene, options: Options) -> Result<Map, Error> {
         panels.push(panel);
         Ok::<(), Error>(())
     })?;
-    Ok(Map {
-        grid: scene.grid.clone(),
-        panels,
-        summary,
-    })
+    Ok(Map { grid: scene.grid.clone(), panels, summary })
 }
 
 /// Computes the regime map of `scene`, and passes one [`Panel`] at a time to `each`, with the index of its whisker.
@@ -95,12 +91,7 @@ pub fn for_each_panel<E: From<Error> + Send>(
 pub fn lazy_map(scene: &Scene, options: Options) -> Result<ComputedMap, Error> {
     let (map, engine) = prepared(scene, Plan::new(scene)?, &options)?;
     let tolerances = map.tolerances(engine.as_deref());
-    Ok(ComputedMap::new(
-        scene.clone(),
-        map.plan,
-        engine,
-        tolerances,
-    ))
+    Ok(ComputedMap::new(scene.clone(), map.plan, engine, tolerances))
 }
 
 /// Runs `plan` with the steps and the engine of `options`.
@@ -155,10 +146,7 @@ fn prepared<'a>(scene: &'a Scene, plan: Plan, options: &Options) -> Result<Prepa
         (excess, options.tolerance_deg, map.left_deg)
     {
         let least = tolerance_deg - left + excess;
-        return Err(Error::Tolerance {
-            tolerance_deg,
-            least,
-        });
+        return Err(Error::Tolerance { tolerance_deg, least });
     }
     Ok((map, engine))
 }

@@ -103,10 +103,8 @@ pub fn accuracy(
     sides: &[Side],
 ) -> Result<Option<Accuracy>, Error> {
     let accuracy = tolerance_deg.map(|tolerance_deg| {
-        cheapest(scene, sides, tolerance_deg).map_err(|finest| Error::Tolerance {
-            tolerance_deg,
-            least: finest.error_deg,
-        })
+        cheapest(scene, sides, tolerance_deg)
+            .map_err(|finest| Error::Tolerance { tolerance_deg, least: finest.error_deg })
     });
     accuracy.transpose()
 }

@@ -50,12 +50,7 @@ impl<'a> PlannedMap<'a> {
         let left_deg = tolerance_deg
             .zip(accuracy)
             .map(|(tolerance_deg, accuracy)| tolerance_deg - accuracy.error_deg);
-        Ok(Self {
-            scene,
-            plan,
-            accuracy,
-            left_deg,
-        })
+        Ok(Self { scene, plan, accuracy, left_deg })
     }
 
     /// Returns the spectral engine whose residuals keep push angles within [`Self::left_deg`]. Boundaries do not depend on an engine, so a map
@@ -65,9 +60,8 @@ impl<'a> PlannedMap<'a> {
         if !self.plan.channels.needs_states() {
             return Spectral::new(KnownRow::RESIDUAL);
         }
-        let bound = self
-            .left_deg
-            .map(|left| (left / bound_deg(self.scene, 1.0)).min(LARGEST_BOUND));
+        let bound =
+            self.left_deg.map(|left| (left / bound_deg(self.scene, 1.0)).min(LARGEST_BOUND));
         bound.map_or_else(Spectral::default, Spectral::new)
     }
 

@@ -137,9 +137,8 @@ mod tests {
             .distance_mm([5.0, 10.0, 15.0]);
         let map = map(&scene.build().unwrap(), Options::default()).unwrap();
         let [height, width] = map.shape();
-        let computed = Channel::ALL
-            .into_iter()
-            .filter(|channel| Channels::STANDARD.contains(channel.name()));
+        let computed =
+            Channel::ALL.into_iter().filter(|channel| Channels::STANDARD.contains(channel.name()));
         for channel in computed {
             let view = map.view(0, channel).unwrap();
             assert_eq!(view.dim(), (height, width));

@@ -184,11 +184,7 @@ pub fn design_until(
     let varied = &varied.into();
     let (scene, _, ranges) = &checked(scene, varied, &[*target])?;
     let search = DesignSearch {
-        scene: &DesignScene {
-            scene,
-            varied,
-            distance_mm: target.distance_mm,
-        },
+        scene: &DesignScene { scene, varied, distance_mm: target.distance_mm },
         target,
         cancel,
     };
@@ -214,12 +210,7 @@ pub fn design_until(
     }
     values.sort_by(f64::total_cmp);
     values.dedup_by(|b, a| is_same(*a, *b));
-    Ok(Design {
-        values,
-        spans,
-        range,
-        ends,
-    })
+    Ok(Design { values, spans, range, ends })
 }
 
 /// Computes the ends of pushes at values of the one `varied` number over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.
@@ -235,11 +226,7 @@ pub fn ends_between(
     let varied = &varied.into();
     let (scene, ..) = &checked(scene, varied, &[*target])?;
     let search = DesignSearch {
-        scene: &DesignScene {
-            scene,
-            varied,
-            distance_mm: target.distance_mm,
-        },
+        scene: &DesignScene { scene, varied, distance_mm: target.distance_mm },
         target,
         cancel: &AtomicBool::new(false),
     };
@@ -294,18 +281,10 @@ fn checked(
     if varied.keeps_taper && (base == tip || varies(Parameter::Taper)) {
         return Err(DesignError::NoTaper);
     }
-    let unvaried = DesignScene {
-        scene,
-        varied,
-        distance_mm,
-    };
+    let unvaried = DesignScene { scene, varied, distance_mm };
     let scene_values: Vec<f64> = (0..count).filter_map(|i| unvaried.scene_value(i)).collect();
     let scene = unvaried.at(&scene_values)?;
-    let at_one_pole = DesignScene {
-        scene: &scene,
-        varied,
-        distance_mm,
-    };
+    let at_one_pole = DesignScene { scene: &scene, varied, distance_mm };
     let mut ranges = Vec::with_capacity(count);
     for (i, range) in at_one_pole.ranges(&scene_values).into_iter().enumerate() {
         let DesignVariable { variable, limits } = varied.variables[i];

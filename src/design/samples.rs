@@ -40,13 +40,7 @@ mod tests {
 
     #[test]
     fn samples_grow_from_end_to_end() {
-        for range in [
-            [0.0, 1.0],
-            [-200.0, 35.0],
-            [1e-6, 1e4],
-            [5e-11, 0.5],
-            [1.0, 2.0],
-        ] {
+        for range in [[0.0, 1.0], [-200.0, 35.0], [1e-6, 1e4], [5e-11, 0.5], [1.0, 2.0]] {
             let values = samples(range, SAMPLES);
             assert_eq!([values[0], values[SAMPLES - 1]], range);
             assert!(values.is_sorted_by(|a, b| a < b), "{range:?}");

@@ -38,11 +38,7 @@ impl DesignSearch<'_> {
         let end = |(value, scene): (&f64, &Option<Scene>)| {
             let found = scene.as_ref().and_then(|_| reached.next());
             let (kind, reached) = found.unwrap_or((DetachmentKind::Unresolved, None));
-            DesignEnd {
-                value: *value,
-                kind,
-                reached,
-            }
+            DesignEnd { value: *value, kind, reached }
         };
         values.iter().zip(&scenes).map(end).collect()
     }
@@ -101,10 +97,7 @@ impl DesignSearch<'_> {
 
     /// The last end of the kind of `before`, and the first end of another kind between it and `after`.
     fn change(&self, mut before: DesignEnd, mut after: DesignEnd) -> [DesignEnd; 2] {
-        let mut bracket = Bracket {
-            below: before.value,
-            above: after.value,
-        };
+        let mut bracket = Bracket { below: before.value, above: after.value };
         let width = CHANGE_WIDTH * (after.value - before.value).abs();
         let Ok(()) = bracket.multisect(width, self.values_at_once(), |values| {
             let ends = self.ends(values);
@@ -144,16 +137,11 @@ impl DesignSearch<'_> {
         let Some(outside) = outside else {
             return inside;
         };
-        let mut bracket = Bracket {
-            below: inside,
-            above: outside,
-        };
+        let mut bracket = Bracket { below: inside, above: outside };
         let width = EQUAL * (outside - inside).abs();
         let Ok(()) = bracket.multisect(width, self.values_at_once(), |values| {
             let ends = self.ends(values);
-            let reached = ends
-                .iter()
-                .take_while(|end| self.is_reached(self.miss(end)));
+            let reached = ends.iter().take_while(|end| self.is_reached(self.miss(end)));
             Ok::<usize, Infallible>(reached.count())
         });
         bracket.below
@@ -166,10 +154,8 @@ impl DesignSearch<'_> {
             let mut spans = spans.iter();
             !spans.any(|[low, high]| (*low..=*high).contains(&value))
         };
-        let mut places: Vec<[f64; 2]> = piece
-            .iter()
-            .map(|end| [end.value, self.miss(end)])
-            .collect();
+        let mut places: Vec<[f64; 2]> =
+            piece.iter().map(|end| [end.value, self.miss(end)]).collect();
         let turns = places.windows(3).filter_map(|three| {
             let three = [three[0], three[1], three[2]];
             turn::toward_zero(three, |value| self.miss_at(value))
@@ -178,10 +164,8 @@ impl DesignSearch<'_> {
         places.extend(turns);
         places.sort_by(|a, b| a[0].total_cmp(&b[0]));
 
-        let crosses: Vec<bool> = places
-            .windows(2)
-            .map(|pair| (pair[0][1] < 0.0) != (pair[1][1] < 0.0))
-            .collect();
+        let crosses: Vec<bool> =
+            places.windows(2).map(|pair| (pair[0][1] < 0.0) != (pair[1][1] < 0.0)).collect();
         let mut solutions = Vec::new();
         for (i, [value, miss]) in places.iter().enumerate() {
             let after = crosses.get(i).is_some_and(|crosses| *crosses);

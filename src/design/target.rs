@@ -132,22 +132,13 @@ impl DesignTarget {
         let variables: Vec<Variable> = all.map(|(variable, _)| *variable).collect();
         let by: Vec<Result<f64, NoDerivative>> = match self.goal.load() {
             None => {
-                let pushed = PushedWhisker {
-                    whisker,
-                    pole,
-                    side,
-                    distances_mm: &[distance_mm],
-                };
+                let pushed = PushedWhisker { whisker, pole, side, distances_mm: &[distance_mm] };
                 let detail = EndDetail::State;
                 let ends = detachments_of(Resolution::FINE, &[pushed], detail, &variables);
                 let push = ends.into_iter().flatten().next()?.by.into_iter();
                 push.map(|by| by.map(|by| by.push_angle_deg)).collect()
             }
-            Some(load) => {
-                largest(whisker, pole, side, distance_mm, load, &variables)
-                    .ok()?
-                    .by
-            }
+            Some(load) => largest(whisker, pole, side, distance_mm, load, &variables).ok()?.by,
         };
         let mut by = by.into_iter();
         let mut along = |direction: &Vec<(Variable, f64)>| {

@@ -99,11 +99,7 @@ pub fn designs_until(
 ) -> Result<Designs, DesignError> {
     let (scene, scene_values, ranges) = &checked(scene, varied, targets)?;
     let search = TogetherSearch {
-        scene: DesignScene {
-            scene,
-            varied,
-            distance_mm: targets[0].distance_mm,
-        },
+        scene: DesignScene { scene, varied, distance_mm: targets[0].distance_mm },
         sizes: sizes(scene, varied, scene_values),
         targets,
         cancel,
@@ -132,10 +128,7 @@ pub fn designs_until(
     for (x, _) in reaching {
         let is_same = |other: &&[f64]| {
             let pairs = x.iter().zip(*other);
-            pairs
-                .map(|(a, b)| (a - b).abs() / (1.0 + a.abs()))
-                .fold(0.0, f64::max)
-                <= SAME
+            pairs.map(|(a, b)| (a - b).abs() / (1.0 + a.abs())).fold(0.0, f64::max) <= SAME
         };
         if !solutions.iter().any(is_same) {
             solutions.push(x);
@@ -147,12 +140,7 @@ pub fn designs_until(
     let in_units = |x: &&[f64]| search.values(x);
     let mut solutions: Vec<Vec<f64>> = solutions.iter().map(in_units).collect();
     solutions.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Ok(Designs {
-        solutions,
-        ranges: ranges.clone(),
-        is_undetermined,
-        nearest,
-    })
+    Ok(Designs { solutions, ranges: ranges.clone(), is_undetermined, nearest })
 }
 
 /// Natural sizes of the varied numbers of a scene, each in its unit: `[variable]`. In these units, all are of order 1.
@@ -177,10 +165,7 @@ struct TogetherSearch<'a> {
 impl TogetherSearch<'_> {
     /// Returns the values of the varied numbers in their units, `[variable]`.
     fn values(&self, x: &[f64]) -> Vec<f64> {
-        x.iter()
-            .zip(&self.sizes)
-            .map(|(x, size)| x * size)
-            .collect()
+        x.iter().zip(&self.sizes).map(|(x, size)| x * size).collect()
     }
 
     fn at(&self, x: &[f64]) -> Option<Scene> {
@@ -210,11 +195,7 @@ impl TogetherSearch<'_> {
     /// Returns the largest relative miss of a target.
     fn miss(&self, x: &[f64]) -> Option<f64> {
         let misses = self.residuals(x)?;
-        Some(
-            misses
-                .into_iter()
-                .fold(0.0, |most, miss| miss.abs().max(most)),
-        )
+        Some(misses.into_iter().fold(0.0, |most, miss| miss.abs().max(most)))
     }
 
     /// Returns true if the targets do not determine the varied numbers at a solution.
@@ -313,11 +294,7 @@ impl Places {
         let places: Vec<Vec<f64>> = (0..side.pow(count as u32)).map(place).collect();
         let rough = |x: &Vec<f64>| search.misses(x, StableBranch::rough_peak);
         let misses = places.par_iter().map(rough).collect();
-        Self {
-            side,
-            places,
-            misses,
-        }
+        Self { side, places, misses }
     }
 
     /// Returns the size of the misses at a place; infinite without a push.
@@ -357,10 +334,8 @@ impl Places {
             };
             let corners: Vec<usize> =
                 is_inside.then(|| (0..1 << variables).map(corner).collect())?;
-            let misses: Vec<&Vec<f64>> = corners
-                .iter()
-                .map(|place| self.misses[*place].as_ref())
-                .collect::<Option<_>>()?;
+            let misses: Vec<&Vec<f64>> =
+                corners.iter().map(|place| self.misses[*place].as_ref()).collect::<Option<_>>()?;
             let between = |target: usize| {
                 let signs = misses.iter().map(|miss| miss[target] < 0.0);
                 signs.clone().any(|is_negative| is_negative)
@@ -377,9 +352,6 @@ impl Places {
         starts.sort_by(|a, b| self.size(*a).total_cmp(&self.size(*b)).then(a.cmp(b)));
         starts.dedup();
         starts.truncate(MOST_STARTS);
-        starts
-            .into_iter()
-            .map(|index| self.places[index].clone())
-            .collect()
+        starts.into_iter().map(|index| self.places[index].clone()).collect()
     }
 }

@@ -42,9 +42,6 @@ mod tests {
             assert_eq!(turn(10.0), None);
         }
         let line = |x: f64| x + 1.5;
-        assert_eq!(
-            toward_zero([-1.0, 0.0, 1.0].map(|x| [x, line(x)]), line),
-            None
-        );
+        assert_eq!(toward_zero([-1.0, 0.0, 1.0].map(|x| [x, line(x)]), line), None);
     }
 }

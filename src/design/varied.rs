@@ -33,10 +33,7 @@ pub struct DesignVariable {
 
 impl From<Variable> for DesignVaried {
     fn from(variable: Variable) -> Self {
-        Self::from_iter([DesignVariable {
-            variable,
-            limits: None,
-        }])
+        Self::from_iter([DesignVariable { variable, limits: None }])
     }
 }
 
@@ -105,12 +102,7 @@ impl DesignVaried {
         values: &[f64],
     ) -> Result<Scene, SceneError> {
         let varied = self;
-        DesignScene {
-            scene,
-            varied,
-            distance_mm,
-        }
-        .at(values)
+        DesignScene { scene, varied, distance_mm }.at(values)
     }
 }
 
@@ -127,10 +119,7 @@ impl DesignScene<'_> {
     /// Returns true if `parameter` is one of the varied numbers.
     fn varies(&self, parameter: Parameter) -> bool {
         let wanted = Variable::from(parameter);
-        self.varied
-            .variables
-            .iter()
-            .any(|design_variable| design_variable.variable == wanted)
+        self.varied.variables.iter().any(|design_variable| design_variable.variable == wanted)
     }
 
     /// Returns the value of variable `i` in the scene, in its unit; `None` if the scene does not give it.

@@ -49,10 +49,7 @@ impl BatchRow {
         pushes: &[f64],
     ) -> impl Iterator<Item = Range<usize>> + use<'_> {
         let end = pushes.partition_point(|other| *other < push);
-        let before = self
-            .columns
-            .iter()
-            .map(move |range| range.start..range.end.min(end));
+        let before = self.columns.iter().map(move |range| range.start..range.end.min(end));
         before.take_while(|range| !range.is_empty())
     }
 }
@@ -119,11 +116,7 @@ impl RowBatch {
         let mut part = Self::new(self.method, Arc::clone(&self.sides), []);
         part.channels = self.channels;
         for (row, columns) in self.rows.iter().zip(columns) {
-            part.rows.push(BatchRow {
-                columns,
-                first_cell: part.cells(),
-                ..*row
-            });
+            part.rows.push(BatchRow { columns, first_cell: part.cells(), ..*row });
         }
         part
     }
@@ -133,9 +126,7 @@ impl RowBatch {
         let rows = self.rows.iter().zip(&part.rows);
         rows.flat_map(|(whole, part)| {
             let columns = part.each_column();
-            columns
-                .map(|column| whole.first_cell + column)
-                .zip(part.first_cell..)
+            columns.map(|column| whole.first_cell + column).zip(part.first_cell..)
         })
     }
 

@@ -66,10 +66,7 @@ impl RowCells<'_> {
             outcome: split_off(&mut self.outcome, count),
             steps: split_off(&mut self.steps, count),
             residual: split_off(&mut self.residual, count),
-            values: self
-                .values
-                .each_mut()
-                .map(|column| split_off(column, count)),
+            values: self.values.each_mut().map(|column| split_off(column, count)),
             points: split_off(&mut self.points, count),
         }
     }
@@ -101,10 +98,7 @@ pub struct Cells {
 fn lengths(batch: &RowBatch) -> ([usize; STATE_CHANNELS.len()], usize) {
     let cells = batch.cells();
     let length = |is_wanted| if is_wanted { cells } else { 0 };
-    (
-        batch.channels.states().map(length),
-        length(batch.channels.has_strain()),
-    )
+    (batch.channels.states().map(length), length(batch.channels.has_strain()))
 }
 
 impl Cells {

@@ -26,10 +26,8 @@ impl SideColumns {
             Side::Cf => 0..first_cb,
             Side::Cb => first_cb..push_angle_deg.len(),
         };
-        let mut signed_pushes: Vec<f64> = push_angle_deg[in_map.clone()]
-            .iter()
-            .map(|push| push.to_radians())
-            .collect();
+        let mut signed_pushes: Vec<f64> =
+            push_angle_deg[in_map.clone()].iter().map(|push| push.to_radians()).collect();
         if side == Side::Cf {
             signed_pushes.reverse();
         }

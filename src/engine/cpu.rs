@@ -41,23 +41,16 @@ impl Cpu {
         let refined_rows: Vec<_> = rows
             .map(|((row, targets), into)| {
                 let count = targets.iter().flatten().count();
-                (
-                    row,
-                    targets,
-                    rest.split_off(..count).unwrap_or_default(),
-                    into,
-                )
+                (row, targets, rest.split_off(..count).unwrap_or_default(), into)
             })
             .collect();
-        refined_rows
-            .into_par_iter()
-            .for_each(|(row, targets, refined, mut into)| {
-                let mut refined = refined.iter();
-                for ((index, column), target) in row.each_column().enumerate().zip(targets) {
-                    let found = target.and_then(|_| refined.next());
-                    into.set(index, &solved(batch, row, column, found));
-                }
-            });
+        refined_rows.into_par_iter().for_each(|(row, targets, refined, mut into)| {
+            let mut refined = refined.iter();
+            for ((index, column), target) in row.each_column().enumerate().zip(targets) {
+                let found = target.and_then(|_| refined.next());
+                into.set(index, &solved(batch, row, column, found));
+            }
+        });
         self.refinement += begun.elapsed();
         cells
     }
@@ -84,29 +77,15 @@ fn targets(batch: &RowBatch, row: &BatchRow) -> Vec<Option<CellTarget>> {
 
 /// The cell of `row` in this `column`, as it was refined; off the sheet if it was not.
 fn solved(batch: &RowBatch, row: &BatchRow, column: usize, refined: Option<&Refined>) -> Cell {
-    let Some(Refined {
-        state,
-        outcome,
-        steps,
-    }) = refined
-    else {
+    let Some(Refined { state, outcome, steps }) = refined else {
         return Cell::new(Outcome::OffSheet, 0);
     };
     if outcome.is_solved() {
         let side = &batch.sides[row.side];
         let signed_push = side.columns.signed_push(column);
-        return side.solved(
-            row.row,
-            signed_push,
-            state,
-            *steps,
-            batch.channels.has_state(),
-        );
+        return side.solved(row.row, signed_push, state, *steps, batch.channels.has_state());
     }
-    Cell {
-        residual: state.residual as f32,
-        ..Cell::new(*outcome, *steps)
-    }
+    Cell { residual: state.residual as f32, ..Cell::new(*outcome, *steps) }
 }
 
 impl Engine for Cpu {

@@ -66,10 +66,7 @@ pub struct EngineDescription {
 impl EngineDescription {
     /// Describes an engine of this name on the CPU.
     fn on_cpu(engine: &str) -> Self {
-        Self {
-            engine: engine.to_owned(),
-            adapter: Unit::detect().to_string(),
-        }
+        Self { engine: engine.to_owned(), adapter: Unit::detect().to_string() }
     }
 
     /// Describes `engine`, or the CPU engine without one.

@@ -185,10 +185,7 @@ impl KnownRow {
         let known = known.map(|known| {
             let (end, residual) = known?;
             // NaN is not below any bound.
-            (residual <= Self::RESIDUAL).then_some(Self {
-                end_push: end.push,
-                residual,
-            })
+            (residual <= Self::RESIDUAL).then_some(Self { end_push: end.push, residual })
         });
         known.collect()
     }
@@ -255,10 +252,7 @@ mod tests {
                     Batch::new(Method::fine()).shoot_at(&sheet.rod, [(tau, load)]);
                 let exact = side.values(row, tau, &exact[0].full, push);
                 for ((found, exact), size) in values.into_iter().zip(exact).zip(sizes) {
-                    assert!(
-                        (found - exact).abs() < 1e-9 * size,
-                        "{row}: {found} {exact}"
-                    );
+                    assert!((found - exact).abs() < 1e-9 * size, "{row}: {found} {exact}");
                 }
                 compared += 1;
             }
@@ -273,9 +267,7 @@ mod tests {
         let sheet = &side.sheet;
         for edge in [Edge::Fold, Edge::Tip] {
             let mut rows = 0..sheet.rows.len();
-            let row = rows
-                .find(|row| sheet.crossings[*row][0].edge == edge)
-                .unwrap();
+            let row = rows.find(|row| sheet.crossings[*row][0].edge == edge).unwrap();
             let (states, _) = sheet.net_row(row).unwrap();
             let weights = weights(&side, row);
             let sound = Chebyshev::through(&numbers(side.reader(), &states));
@@ -306,9 +298,8 @@ mod tests {
             // Coefficients end where rounding does.
             let length = |size: f64| {
                 let last = weights.map(|weight| size / weight);
-                let longer = accepted(MOST, states.end, &|functions| {
-                    functions.coefficients.push(last)
-                });
+                let longer =
+                    accepted(MOST, states.end, &|functions| functions.coefficients.push(last));
                 longer.unwrap().inverse.functions.coefficients.len()
             };
             assert!(length(1e-16) <= count);
@@ -327,9 +318,7 @@ mod tests {
         let mut side = cone();
         for edge in [Edge::Fold, Edge::Tip] {
             let mut rows = 0..side.sheet.rows.len();
-            let row = rows
-                .find(|row| side.sheet.crossings[*row][0].edge == edge)
-                .unwrap();
+            let row = rows.find(|row| side.sheet.crossings[*row][0].edge == edge).unwrap();
             let end = side.sheet.crossings[row][0].push;
             let distance = side.sheet.rows[row].pole_distance;
             let mut is_known = |off: f64| {

@@ -34,10 +34,7 @@ impl Spectral {
     /// Creates a spectral engine with a residual of at most `most` whisker lengths.
     #[must_use]
     pub fn new(most: f64) -> Self {
-        Self {
-            most,
-            submitted: VecDeque::new(),
-        }
+        Self { most, submitted: VecDeque::new() }
     }
 
     /// Solves the cells of `batch` whose rows have expansions, or are known.
@@ -45,20 +42,16 @@ impl Spectral {
     pub fn solve(&self, batch: &RowBatch) -> Cells {
         let mut cells = Cells::new(batch, Outcome::NoRow);
         let rows: Vec<_> = batch.rows.iter().zip(cells.rows_mut(batch)).collect();
-        rows.into_par_iter()
-            .enumerate()
-            .for_each(|(index, (row, mut into))| {
-                let of_row = (batch.expansions.get(index), batch.known.get(index));
-                match of_row {
-                    (Some(Some(expansion)), _) => {
-                        write(batch, row, expansion, self.most, &mut into)
-                    }
-                    (_, Some(Some(known))) => {
-                        known.write(row, &batch.sides[row.side].columns.pushes, into);
-                    }
-                    _ => {}
+        rows.into_par_iter().enumerate().for_each(|(index, (row, mut into))| {
+            let of_row = (batch.expansions.get(index), batch.known.get(index));
+            match of_row {
+                (Some(Some(expansion)), _) => write(batch, row, expansion, self.most, &mut into),
+                (_, Some(Some(known))) => {
+                    known.write(row, &batch.sides[row.side].columns.pushes, into);
                 }
-            });
+                _ => {}
+            }
+        });
         cells
     }
 }
@@ -76,51 +69,36 @@ pub(super) fn write(
     let distance = sheet.rows[row.row].pole_distance;
     let pushes = &side.columns.pushes;
     let before = row.columns_before(expansion.end_push, pushes);
-    let targets: Vec<f64> = before
-        .flat_map(|columns| &pushes[columns])
-        .copied()
-        .collect();
-    let RowCells {
-        outcome,
-        residual,
-        values,
-        points,
-        ..
-    } = into;
+    let targets: Vec<f64> = before.flat_map(|columns| &pushes[columns]).copied().collect();
+    let RowCells { outcome, residual, values, points, .. } = into;
     expansion.write_beyond(row, pushes, outcome);
     let wanted = functions(batch.channels);
-    expansion.inverse.solve(
-        &targets,
-        &wanted,
-        |from, count, block: &InverseBlock<FUNCTIONS>| {
-            let [found, tau, load, channels @ ..] = &block.values;
-            for lane in 0..count {
-                let miss = (found[lane] - targets[from + lane]).abs() * distance;
-                let bound = expansion.residual + miss;
-                // NaN is not below any bound.
-                let is_inside =
-                    (-OUTSIDE..=expansion.inverse.end + OUTSIDE).contains(&block.places[lane]);
-                let is_certified = is_inside && bound <= most;
-                outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
-                    _ if !is_certified => Outcome::Missed,
-                    true => Outcome::NearEdge,
-                    false => Outcome::Solved,
-                };
-                residual[from + lane] = bound as f32;
-            }
-            let here = from..from + count;
-            for (column, values) in values.iter_mut().zip(channels) {
-                let numbers = column.get_mut(here.clone()).into_iter().flatten();
-                numbers
-                    .zip(values)
-                    .for_each(|(number, value)| *number = *value as f32);
-            }
-            let points = points.get_mut(here).into_iter().flatten();
-            points
-                .zip(tau.iter().zip(load))
-                .for_each(|(point, (tau, load))| *point = DVec2::new(*tau, *load));
-        },
-    );
+    expansion.inverse.solve(&targets, &wanted, |from, count, block: &InverseBlock<FUNCTIONS>| {
+        let [found, tau, load, channels @ ..] = &block.values;
+        for lane in 0..count {
+            let miss = (found[lane] - targets[from + lane]).abs() * distance;
+            let bound = expansion.residual + miss;
+            // NaN is not below any bound.
+            let is_inside =
+                (-OUTSIDE..=expansion.inverse.end + OUTSIDE).contains(&block.places[lane]);
+            let is_certified = is_inside && bound <= most;
+            outcome[from + lane] = match sheet.is_at_tip(tau[lane], bound) {
+                _ if !is_certified => Outcome::Missed,
+                true => Outcome::NearEdge,
+                false => Outcome::Solved,
+            };
+            residual[from + lane] = bound as f32;
+        }
+        let here = from..from + count;
+        for (column, values) in values.iter_mut().zip(channels) {
+            let numbers = column.get_mut(here.clone()).into_iter().flatten();
+            numbers.zip(values).for_each(|(number, value)| *number = *value as f32);
+        }
+        let points = points.get_mut(here).into_iter().flatten();
+        points
+            .zip(tau.iter().zip(load))
+            .for_each(|(point, (tau, load))| *point = DVec2::new(*tau, *load));
+    });
 }
 
 impl Engine for Spectral {

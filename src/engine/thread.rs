@@ -119,12 +119,7 @@ mod tests {
     }
 
     fn counting(most: usize, panics: bool) -> Counting {
-        Counting {
-            submitted: 0,
-            collected: 0,
-            most,
-            panics,
-        }
+        Counting { submitted: 0, collected: 0, most, panics }
     }
 
     fn nothing() -> Arc<RowBatch> {

@@ -70,11 +70,7 @@ impl<'e> Worker<'e> {
             let ((to_cells, cells), (to_states, states)) = (channel(), channel());
             let serve = move || serve(engine, &requested, &to_cells, &to_states);
             let thread = scope.spawn(serve);
-            let done = work(worker(Some(Connection::Thread {
-                requests,
-                cells,
-                states,
-            })));
+            let done = work(worker(Some(Connection::Thread { requests, cells, states })));
             // A panic of the thread is in `failure` by now, or no cells were collected after it.
             let _ = thread.join();
             done

@@ -47,16 +47,10 @@ impl Covariance {
                 }
                 rank += 1;
             } else {
-                free.iter_mut()
-                    .zip(direction)
-                    .for_each(|(free, part)| *free += part * part);
+                free.iter_mut().zip(direction).for_each(|(free, part)| *free += part * part);
             }
         }
-        Self {
-            matrix,
-            rank,
-            is_determined: free.iter().map(|free| free.sqrt() < PART).collect(),
-        }
+        Self { matrix, rank, is_determined: free.iter().map(|free| free.sqrt() < PART).collect() }
     }
 
     /// Returns the product of the covariance with the `gradient` of a sum by the parameters, `[parameter]`: the Gauss-Newton step against it.
@@ -108,11 +102,7 @@ mod tests {
         for (part, is_determined) in [(2e-3, false), (0.5e-3, true)] {
             let jacobian = [vec![1.0, 0.0], vec![0.0, 1.0], vec![part, 1.0]];
             // The direction is of length 1.41.
-            assert_eq!(
-                determined(&jacobian),
-                [is_determined, false, false],
-                "{part}"
-            );
+            assert_eq!(determined(&jacobian), [is_determined, false, false], "{part}");
         }
     }
 }

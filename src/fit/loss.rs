@@ -88,18 +88,8 @@ mod tests {
     #[test]
     fn losses_are_those_of_scipy() {
         for (r, loss, value, slope) in [
-            (
-                0.5,
-                FitLoss::SoftL1,
-                0.236_067_977_499_789_8,
-                0.894_427_190_999_915_8,
-            ),
-            (
-                3.0,
-                FitLoss::SoftL1,
-                4.324_555_320_336_759,
-                0.316_227_766_016_837_94,
-            ),
+            (0.5, FitLoss::SoftL1, 0.236_067_977_499_789_8, 0.894_427_190_999_915_8),
+            (3.0, FitLoss::SoftL1, 4.324_555_320_336_759, 0.316_227_766_016_837_94),
             (0.5, FitLoss::Huber, 0.25, 1.0),
             (3.0, FitLoss::Huber, 5.0, 1.0 / 3.0),
             (3.0, FitLoss::Squares, 9.0, 1.0),
@@ -118,10 +108,7 @@ mod tests {
                 let difference =
                     |of: &dyn Fn(f64) -> f64| (of(r + step) - of(r - step)) / (2.0 * step);
                 let slope = loss.root_slope(loss.root(r));
-                assert!(
-                    (slope - difference(&|r| loss.root(r))).abs() < 1e-8,
-                    "{loss:?} {r}"
-                );
+                assert!((slope - difference(&|r| loss.root(r))).abs() < 1e-8, "{loss:?} {r}");
                 let pull = difference(&|r| loss.weight(r) * r);
                 assert!((loss.curvature(r) - pull).abs() < 1e-8, "{loss:?} {r}");
                 // The rounding of the difference grows with the loss: up to 5e-11 of the loss was measured.

@@ -41,9 +41,7 @@ impl<'a> Misfit<'a> {
             points,
             free,
             loss,
-            units: units
-                .map(|size| libm::exp2(libm::log2(size).round()))
-                .collect(),
+            units: units.map(|size| libm::exp2(libm::log2(size).round())).collect(),
             cancel,
         }
     }
@@ -56,25 +54,20 @@ impl<'a> Misfit<'a> {
     /// Returns the scene's values of the free parameters, each divided by its unit in [`Misfit::units`]: `[parameter]`. The scene must give them all.
     pub fn start(&self) -> Vec<f64> {
         let values = self.free.iter().zip(&self.units);
-        values
-            .filter_map(|(parameter, unit)| Some(parameter.value(self.scene)? / unit))
-            .collect()
+        values.filter_map(|(parameter, unit)| Some(parameter.value(self.scene)? / unit)).collect()
     }
 
     /// Returns the range that `scene` accepts for each free parameter with all others fixed, divided by its unit in [`Misfit::units`]:
     /// `[parameter][least, greatest]`.
     pub fn ranges(&self, scene: &Scene) -> Vec<[f64; 2]> {
         let free = self.free.par_iter().zip(&self.units);
-        free.map(|(parameter, unit)| parameter.range(scene).map(|end| end / unit))
-            .collect()
+        free.map(|(parameter, unit)| parameter.range(scene).map(|end| end / unit)).collect()
     }
 
     /// Returns the scene with these values of the free parameters, `[parameter]`, each divided by its unit in [`Misfit::units`].
     pub fn scene(&self, parameters: &[f64]) -> Result<Scene, SceneError> {
         let values = self.free.iter().zip(&self.units).zip(parameters);
-        let values: Vec<_> = values
-            .map(|((parameter, unit), x)| (*parameter, unit * x))
-            .collect();
+        let values: Vec<_> = values.map(|((parameter, unit), x)| (*parameter, unit * x)).collect();
         self.scene.with_parameters(&values)
     }
 
@@ -115,11 +108,8 @@ impl<'a> Misfit<'a> {
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
     fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         let whiskers = self.points.whiskers_in(&*self.accepted(parameters)?).ok()?;
-        let variables: Vec<Variable> = self
-            .free
-            .iter()
-            .map(|parameter| (*parameter).into())
-            .collect();
+        let variables: Vec<Variable> =
+            self.free.iter().map(|parameter| (*parameter).into()).collect();
         let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
         // With a free taper, the radius at the tip follows the radius at the base. No detachment depends on the size of a cone.
         if self.free.contains(&Parameter::Taper) {
@@ -161,9 +151,6 @@ impl BoundedProblem for Misfit<'_> {
     fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]> {
         // Searches begin and end where the scene accepts the parameters.
         let scene = self.scene(x);
-        scene.map_or_else(
-            |_| x.iter().map(|x| [*x; 2]).collect(),
-            |scene| self.ranges(&scene),
-        )
+        scene.map_or_else(|_| x.iter().map(|x| [*x; 2]).collect(), |scene| self.ranges(&scene))
     }
 }

@@ -84,23 +84,14 @@ impl Fit {
         let left_out = points.left_out(&self.comparison).into_iter();
         let outliers = (is_fit && !has_squares).then(|| pull::outliers(self, points));
         let outliers = outliers.into_iter().flatten();
-        left_out
-            .chain(parameters)
-            .chain(large)
-            .chain(outliers)
-            .collect()
+        left_out.chain(parameters).chain(large).chain(outliers).collect()
     }
 
     /// Returns one line for the parameter that does not start at its value in `scene`; `None` without one. `scene` and `points` are those
     /// of the fit.
     #[must_use]
     pub fn moved_start(&self, scene: &Scene, points: &MeasuredPoints) -> Option<String> {
-        let MovedStart {
-            parameter,
-            value,
-            line,
-            distance_mm,
-        } = self.moved?;
+        let MovedStart { parameter, value, line, distance_mm } = self.moved?;
         let scene_value = parameter.value(scene).unwrap_or(f64::NAN);
         let [distance, start, scene_value] =
             [distance_mm, value, scene_value].map(|number| digits(rounded(number, 6)));
@@ -212,13 +203,7 @@ const NARROWEST: f64 = 1e-6;
 /// If a parameter cannot be free, a name is not in the table, a point is beyond the whisker for every tried start, points are too few, or the
 /// iteration does not converge.
 pub fn fit(scene: &Scene, points: &MeasuredPoints, free: &[Parameter]) -> Result<Fit, FitError> {
-    fit_until(
-        scene,
-        points,
-        free,
-        FitLoss::Squares,
-        &AtomicBool::new(false),
-    )
+    fit_until(scene, points, free, FitLoss::Squares, &AtomicBool::new(false))
 }
 
 /// Fits parameters as [`fit`] does, with a loss of residuals. The scale of the loss is the standard deviation of each point, which is 1 degree if
@@ -250,9 +235,8 @@ pub fn fit_until(
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
     let here = misfit.residuals_at(&best);
-    let (here, mut jacobian) = here
-        .zip(misfit.jacobian(&best))
-        .ok_or(FitError::NotConverged(NO_JACOBIAN))?;
+    let (here, mut jacobian) =
+        here.zip(misfit.jacobian(&best)).ok_or(FitError::NotConverged(NO_JACOBIAN))?;
     let ranges = misfit.ranges(&fitted);
     let is_at_limit = |i: usize| ranges[i].contains(&best[i]);
     // The limit determines such a parameter, not the points.
@@ -269,13 +253,8 @@ pub fn fit_until(
         (_, freedom) => variance(loss, &here, freedom),
     };
     let comparison = points.beside_all(&points.whiskers_in(&fitted)?);
-    let not_a_fit = NotAFit::new(
-        &used,
-        scene,
-        rms_deg(loss, &here, &used),
-        chi_square,
-        degrees_of_freedom,
-    );
+    let not_a_fit =
+        NotAFit::new(&used, scene, rms_deg(loss, &here, &used), chi_square, degrees_of_freedom);
     let estimate = |(i, [least, most]): (usize, &[f64; 2])| {
         let (value, unit) = (best[i], misfit.units[i]);
         let error = covariance.deviation(i).zip(variance);
@@ -291,24 +270,13 @@ pub fn fit_until(
     };
     let estimates: Vec<Estimate> = ranges.iter().enumerate().map(estimate).collect();
     let is_known = |i: usize| estimates[i].standard_error.is_some();
-    let correlation = |i, j| {
-        covariance
-            .correlation(i, j)
-            .filter(|_| is_known(i) && is_known(j))
-    };
+    let correlation = |i, j| covariance.correlation(i, j).filter(|_| is_known(i) && is_known(j));
     let all = || 0..free.len();
-    let pulls = pulls(
-        (loss, &used),
-        (&here, &jacobian),
-        (&covariance, variance),
-        &estimates,
-    );
+    let pulls = pulls((loss, &used), (&here, &jacobian), (&covariance, variance), &estimates);
     Ok(Fit {
         loss,
         pulls,
-        correlation: all()
-            .map(|i| all().map(|j| correlation(i, j)).collect())
-            .collect(),
+        correlation: all().map(|i| all().map(|j| correlation(i, j)).collect()).collect(),
         chi_square,
         degrees_of_freedom,
         comparison,
@@ -325,16 +293,13 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
         return Err(FitError::NothingFree);
     }
     for (i, &parameter) in free.iter().enumerate() {
-        let same = free[..i]
-            .iter()
-            .find(|other| other.key() == parameter.key());
+        let same = free[..i].iter().find(|other| other.key() == parameter.key());
         if let Some(same) = same {
             return Err(FitError::Twice(*same, parameter));
         }
-        let value = parameter.value(scene).ok_or_else(|| FitError::Lacking {
-            parameter,
-            has: Parameter::given(scene),
-        })?;
+        let value = parameter
+            .value(scene)
+            .ok_or_else(|| FitError::Lacking { parameter, has: Parameter::given(scene) })?;
         if let Some(column) = scene.column_of(parameter) {
             return Err(FitError::Column(parameter, column));
         }
@@ -351,16 +316,10 @@ fn check(scene: &Scene, free: &[Parameter]) -> Result<(), FitError> {
 /// residuals are on the linear part of the loss.
 fn variance(loss: FitLoss, residuals: &[f64], freedom: usize) -> Option<f64> {
     let count = residuals.len() as f64;
-    let pulls: f64 = residuals
-        .iter()
-        .map(|r| (loss.weight(*r) * r).powi(2))
-        .sum();
+    let pulls: f64 = residuals.iter().map(|r| (loss.weight(*r) * r).powi(2)).sum();
     let curvatures = || residuals.iter().map(|r| loss.curvature(*r));
     let mean = curvatures().sum::<f64>() / count;
-    let spread = curvatures()
-        .map(|curvature| (curvature - mean).powi(2))
-        .sum::<f64>()
-        / count;
+    let spread = curvatures().map(|curvature| (curvature - mean).powi(2)).sum::<f64>() / count;
     let parameters = count - freedom as f64;
     let few = 1.0 + parameters / count * spread / (mean * mean);
     let variance = few * few * pulls / freedom as f64 / (mean * mean);
@@ -372,10 +331,7 @@ fn rms_deg(loss: FitLoss, residuals: &[f64], used: &MeasuredPoints) -> Option<f6
     let weighted = residuals.iter().zip(&used.points);
     let [squares, weights] = weighted.fold([0.0; 2], |[squares, weights], (r, point)| {
         let weight = loss.weight(*r);
-        [
-            squares + weight * (r * point.sd_deg).powi(2),
-            weights + weight,
-        ]
+        [squares + weight * (r * point.sd_deg).powi(2), weights + weight]
     });
     (weights > 0.0).then(|| (squares / weights).sqrt())
 }

@@ -77,9 +77,8 @@ pub(super) fn pulls(
 /// of the residuals gives the standard deviation of all points.
 pub(super) fn outliers(fit: &Fit, points: &MeasuredPoints) -> Vec<String> {
     let rows = fit.comparison.rows.iter();
-    let residuals: Vec<(usize, f64, Option<f64>)> = rows
-        .filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg)))
-        .collect();
+    let residuals: Vec<(usize, f64, Option<f64>)> =
+        rows.filter_map(|row| Some((row.line, row.residual_deg?, row.sd_deg))).collect();
     let median = median(residuals.iter().map(|(_, residual, _)| residual.abs()));
     let outlier = |&(line, residual, sd): &(usize, f64, Option<f64>)| {
         let deviations = (residual / sd.unwrap_or(OF_MEDIAN * median)).abs();

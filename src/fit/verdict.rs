@@ -63,9 +63,8 @@ impl NotAFit {
         freedom: usize,
     ) -> Option<Self> {
         let angles = used.points.iter().map(|point| point.angle_deg);
-        let [least, most] = angles.fold([0.0_f64; 2], |[least, most], angle| {
-            [least.min(angle), most.max(angle)]
-        });
+        let [least, most] =
+            angles.fold([0.0_f64; 2], |[least, most], angle| [least.min(angle), most.max(angle)]);
         let largest_rms_deg = LARGEST_RMS_DEG.min(LARGEST_PART * (most - least));
         let rms_deg = rms_deg?;
         let is_near = rms_deg <= largest_rms_deg;
@@ -102,12 +101,7 @@ impl LikelyCause {
         let comparison = points.beside_all(&whiskers);
         let predicted = comparison.rows.iter().filter_map(|row| row.predicted_deg);
         let has_tens = predicted.fold(0.0, |most: f64, angle| most.max(angle.abs())) >= TENS_DEG;
-        if has_tens
-            && points
-                .points
-                .iter()
-                .all(|point| point.angle_deg.abs() < TURN)
-        {
+        if has_tens && points.points.iter().all(|point| point.angle_deg.abs() < TURN) {
             return Some(Self::Radians);
         }
         let mut farther = points.clone();
@@ -196,20 +190,12 @@ mod tests {
     ) -> Option<NotAFit> {
         let places = [8.0, 10.0, 12.0].map(|distance_mm| [distance_mm, 20.0]);
         let theory = compared(&points(&places, None));
-        let places = theory.rows.iter().map(|row| {
-            [
-                row.distance_mm.unwrap(),
-                row.predicted_deg.unwrap() + off_deg,
-            ]
-        });
+        let places = theory
+            .rows
+            .iter()
+            .map(|row| [row.distance_mm.unwrap(), row.predicted_deg.unwrap() + off_deg]);
         let near = points(&places.collect::<Vec<_>>(), sd_deg);
-        NotAFit::new(
-            &near,
-            &cone(),
-            compared(&near).rms_deg(),
-            chi_square,
-            freedom,
-        )
+        NotAFit::new(&near, &cone(), compared(&near).rms_deg(), chi_square, freedom)
     }
 
     #[test]

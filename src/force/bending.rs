@@ -33,9 +33,7 @@ impl Bending {
         let s = frame.at_arc_length_mm / length;
         let change_per_mm = frame.curvature_per_mm - rest.curvature(s) / length;
         Self {
-            at: frame
-                .at_mm
-                .map_or_else(|| rest.at_arclength(s).0 * length, DVec2::from),
+            at: frame.at_mm.map_or_else(|| rest.at_arclength(s).0 * length, DVec2::from),
             change_per_mm,
             stiffness: length * rod.stiffness(s) * whisker.units().moment_nnm,
             length_mm: length,
@@ -45,10 +43,7 @@ impl Bending {
     /// Returns the bending with a change of the curvature that is less by a baseline, in 1/mm.
     pub fn less(self, baseline_per_mm: f64) -> Self {
         let change_per_mm = self.change_per_mm - baseline_per_mm;
-        Self {
-            change_per_mm,
-            ..self
-        }
+        Self { change_per_mm, ..self }
     }
 
     /// Returns the bending moment, in nN m.
@@ -58,10 +53,7 @@ impl Bending {
 
     /// Returns the row of a frame without contact at `time_s`, in s: all loads are 0.
     pub fn free(&self, time_s: f64) -> FrameForce {
-        FrameForce {
-            reason: None,
-            ..self.none(time_s, NoForce::NoLever).unloaded()
-        }
+        FrameForce { reason: None, ..self.none(time_s, NoForce::NoLever).unloaded() }
     }
 
     /// Returns the row of a frame at `time_s`, in s, without a force for this reason.

@@ -59,10 +59,9 @@ impl CurvatureFrames {
     pub fn of(table: &CsvTable, length_mm: f64, method: ForceMethod) -> Result<Self, CsvError> {
         let angle: &[&str] = &[ANGLE];
         let (needed, optional) = match method {
-            ForceMethod::Lever => (
-                [&NEEDED[..], &[angle]].concat(),
-                [&AT[..], &[CONTACT]].concat(),
-            ),
+            ForceMethod::Lever => {
+                ([&NEEDED[..], &[angle]].concat(), [&AT[..], &[CONTACT]].concat())
+            }
             ForceMethod::Model => {
                 // The model has no use for the angle: another column is not meant as it.
                 let unused = angle.iter().filter(|name| table.has(name));
@@ -72,10 +71,7 @@ impl CurvatureFrames {
         };
         let note = table.require(&needed, &optional)?;
         if table.has(AT[0]) != table.has(AT[1]) {
-            let what = format!(
-                "has one of {} and {}: must have both, or none",
-                AT[0], AT[1]
-            );
+            let what = format!("has one of {} and {}: must have both, or none", AT[0], AT[1]);
             return Err(CsvError::whole(&table.origin, what));
         }
         let times = table.times_s()?;
@@ -86,9 +82,8 @@ impl CurvatureFrames {
         let on_whisker =
             format!("a number of at least 0 and less than {length_mm}, the whisker's length in mm");
         let is_on_whisker = |mm: f64| (0.0..length_mm).contains(&mm);
-        let places = table
-            .measurements("at_arc_length_mm", &on_whisker, is_on_whisker)?
-            .unwrap_or_default();
+        let places =
+            table.measurements("at_arc_length_mm", &on_whisker, is_on_whisker)?.unwrap_or_default();
         let [xs, ys] = ["contact_x_mm", "contact_y_mm"].map(number);
         let (xs, ys) = (xs?.unwrap_or_default(), ys?.unwrap_or_default());
         let turn = "a number between -360 and 360";
@@ -104,9 +99,7 @@ impl CurvatureFrames {
                 None => contact_mm.into_iter().all(f64::is_nan),
             };
             let contact = (!is_free).then_some(FrameContact {
-                is_known: contacts
-                    .as_ref()
-                    .is_none_or(|contacts| !contacts[i].is_nan()),
+                is_known: contacts.as_ref().is_none_or(|contacts| !contacts[i].is_nan()),
                 contact_mm,
                 contact_angle_deg: angle,
             });
@@ -119,11 +112,6 @@ impl CurvatureFrames {
                 contact,
             });
         }
-        Ok(Self {
-            origin: table.origin.clone(),
-            frames,
-            have_contacts: contacts.is_some(),
-            note,
-        })
+        Ok(Self { origin: table.origin.clone(), frames, have_contacts: contacts.is_some(), note })
     }
 }

@@ -63,9 +63,7 @@ impl CurvatureFrame {
         let angle = contact
             .and_then(|contact| contact.contact_angle_deg)
             .filter(|_| method == ForceMethod::Lever);
-        let at = self
-            .at_mm
-            .filter(|_| method == ForceMethod::Lever && contact.is_some());
+        let at = self.at_mm.filter(|_| method == ForceMethod::Lever && contact.is_some());
         let [at, place] = [at.unwrap_or([0.0; 2]), position];
         let numbers = [self.curvature_per_mm, self.at_arc_length_mm];
         let numbers = numbers.into_iter().chain(at).chain(place).chain(angle);
@@ -235,9 +233,7 @@ pub fn forces_until(
 ) -> Vec<FrameForce> {
     let method = options.method;
     let deviations = options.with_scatter();
-    let baseline_per_mm = options
-        .baseline
-        .map_or(0.0, |baseline| baseline.mean_per_mm);
+    let baseline_per_mm = options.baseline.map_or(0.0, |baseline| baseline.mean_per_mm);
     let distances = frames.iter().filter_map(|frame| frame.contact);
     let distances = distances.map(|contact| DVec2::from(contact.contact_mm).length());
     let nearest = distances.fold(whisker.length_mm, f64::min);

@@ -37,11 +37,7 @@ impl Model {
             let sheet = Sheet::of_ends(method, &rod, side, &distances);
             (rod, sheet)
         });
-        Self {
-            sides,
-            units: whisker.units(),
-            axis,
-        }
+        Self { sides, units: whisker.units(), axis }
     }
 
     /// Returns the force in a frame in contact.
@@ -61,10 +57,7 @@ impl Model {
             axis: self.axis,
         };
         let [(rod, _), _] = &self.sides;
-        let rest = Rest::new(&Rod {
-            pole: 0.0,
-            ..rod.clone()
-        });
+        let rest = Rest::new(&Rod { pole: 0.0, ..rod.clone() });
         let (s, _) = rest.touch_at_distance(measured.contact.length());
         if s > rest.end() {
             return none(NoForce::OutOfReach);
@@ -72,11 +65,7 @@ impl Model {
         let off = |state: &ModelState| state.contact.distance(measured.contact);
         let mut no_force = NoForce::NoLever;
         let found = self.sides.iter().flat_map(|(rod, sheet)| {
-            let curve = StateCurve {
-                rod,
-                sheet,
-                measured,
-            };
+            let curve = StateCurve { rod, sheet, measured };
             let samples = curve.samples(rod.tau(s));
             if curve.have_lever(&samples) {
                 no_force = NoForce::NoState;
@@ -137,12 +126,7 @@ impl Model {
         let [of_tau, of_load] = [by_tau.constraints, by_load.constraints];
         let det = of_tau.perp_dot(of_load);
         let units = &self.units;
-        let scale = [
-            units.force_un,
-            units.force_un,
-            units.force_un,
-            units.moment_nnm,
-        ];
+        let scale = [units.force_un, units.force_un, units.force_un, units.moment_nnm];
         let along = |tau_by: f64, load_by: f64, unit: f64| {
             let sum = |i: usize| tau_by * by_tau.loads[i] + load_by * by_load.loads[i];
             std::array::from_fn(|i| sum(i) * scale[i] * unit)
@@ -153,9 +137,7 @@ impl Model {
         let direction = measured.contact.normalize();
         Some(LoadDerivatives {
             by_curvature,
-            by_contact: direction
-                .to_array()
-                .map(|part| by_distance.map(|by| part * by)),
+            by_contact: direction.to_array().map(|part| by_distance.map(|by| part * by)),
             by_angle: [0.0; 4],
         })
     }

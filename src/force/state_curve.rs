@@ -183,10 +183,7 @@ impl StateCurve<'_> {
             };
             if (next.miss < 0.0) != is_below[1] {
                 let inner = self.between([middle, next]);
-                return inner
-                    .into_iter()
-                    .chain(self.between([next, beyond]))
-                    .collect();
+                return inner.into_iter().chain(self.between([next, beyond])).collect();
             }
             around = match (next.miss.abs() < middle.miss.abs(), is_longer_after) {
                 (true, true) => [middle, next, to],
@@ -215,12 +212,9 @@ impl StateCurve<'_> {
         }
         let (point, full) = (found.point, found.state);
         let at = [self.measured.at];
-        let [measured] = profile(self.rod, point.x, point.y, FINE, &at)
-            .try_into()
-            .ok()?;
-        let axis = full
-            .tangent
-            .rotate(DVec2::from_angle(-self.measured.axis.turn(self.rod, &full)));
+        let [measured] = profile(self.rod, point.x, point.y, FINE, &at).try_into().ok()?;
+        let axis =
+            full.tangent.rotate(DVec2::from_angle(-self.measured.axis.turn(self.rod, &full)));
         let state = ModelState {
             point,
             full,

@@ -28,33 +28,25 @@ pub fn surely_slides_to_end(
     let states: Vec<FirstVariation> =
         Batch::new(sheet.method()).shoot_at(&sheet.rod, all.map(|point| (point.x, point.y)));
     let mut states = states.into_iter();
-    let surely = rows
-        .iter()
-        .zip(&points)
-        .map(|((row, end, at_end), points)| {
-            let Some(points) = points else {
-                return false;
+    let surely = rows.iter().zip(&points).map(|((row, end, at_end), points)| {
+        let Some(points) = points else {
+            return false;
+        };
+        let level = sheet.level(*row);
+        let pairs = points.iter().copied().zip(states.by_ref());
+        let pairs = pairs.chain([(DVec2::new(end.tau, end.load), *at_end)]);
+        let mut before: Option<CurveNode> = None;
+        let knots = pairs.map(|(point, state)| {
+            let node = match before {
+                Some(before) => level.node(point, &state.full, before.signed_push, before.angle),
+                None => CurveNode { signed_push: 0.0, ..level.node(point, &state.full, 0.0, 0.0) },
             };
-            let level = sheet.level(*row);
-            let pairs = points.iter().copied().zip(states.by_ref());
-            let pairs = pairs.chain([(DVec2::new(end.tau, end.load), *at_end)]);
-            let mut before: Option<CurveNode> = None;
-            let knots = pairs.map(|(point, state)| {
-                let node = match before {
-                    Some(before) => {
-                        level.node(point, &state.full, before.signed_push, before.angle)
-                    }
-                    None => CurveNode {
-                        signed_push: 0.0,
-                        ..level.node(point, &state.full, 0.0, 0.0)
-                    },
-                };
-                before = Some(node);
-                SlidingKnot::new(&level, node, &state)
-            });
-            let (knots, folds) = (knots.collect(), [false, end.edge == Edge::Fold]);
-            is_farthest_at_end(&SlidingLimit::through(level, true, knots, folds))
+            before = Some(node);
+            SlidingKnot::new(&level, node, &state)
         });
+        let (knots, folds) = (knots.collect(), [false, end.edge == Edge::Fold]);
+        is_farthest_at_end(&SlidingLimit::through(level, true, knots, folds))
+    });
     surely.collect()
 }
 
@@ -72,10 +64,7 @@ fn points(sheet: &Sheet, row: usize, end: &Crossing) -> Option<Vec<DVec2>> {
 
 /// Returns true if the slid distance at the end of `limit` is larger than everywhere before.
 fn is_farthest_at_end(limit: &SlidingLimit) -> bool {
-    let grows = limit
-        .segments
-        .iter()
-        .all(|segment| segment.to.push > segment.from.push);
+    let grows = limit.segments.iter().all(|segment| segment.to.push > segment.from.push);
     let end = limit.end();
     let before = limit.pushes().filter(|push| *push < end);
     let before: Option<Vec<f64>> = before.map(|push| limit.slid(push)).collect();

@@ -56,29 +56,18 @@ impl CourseLimits {
     /// Returns the query of the state in `phase` at `push`, a magnitude in radians.
     #[must_use]
     pub const fn query(&self, phase: ContactPhase, push: f64) -> ContactQuery<'_> {
-        ContactQuery {
-            history: &self.history,
-            push,
-            phase,
-        }
+        ContactQuery { history: &self.history, push, phase }
     }
 
     /// Begins a course at first touch.
     #[must_use]
     pub fn begin(&self) -> FrictionCourse<'_> {
-        let end = SlidingEnd {
-            limit: Sliding::Tip,
-            push: 0.0,
-        };
+        let end = SlidingEnd { limit: Sliding::Tip, push: 0.0 };
         let tip = self.history.limit(Sliding::Tip);
         let slid = tip.and_then(|tip| tip.slid(0.0)).unwrap_or(f64::NAN);
         FrictionCourse {
             limits: self,
-            knot: HistoryKnot {
-                push: 0.0,
-                slid,
-                end,
-            },
+            knot: HistoryKnot { push: 0.0, slid, end },
             phase: ContactPhase::Slides(Sliding::Tip),
             dissipated: 0.0,
             snaps: Vec::new(),
@@ -96,10 +85,7 @@ impl CourseLimits {
     fn stop(&self, push: f64, grows: bool) -> Option<f64> {
         let index = match grows {
             true => self.stops.partition_point(|stop| *stop <= push),
-            false => self
-                .stops
-                .partition_point(|stop| *stop < push)
-                .checked_sub(1)?,
+            false => self.stops.partition_point(|stop| *stop < push).checked_sub(1)?,
         };
         self.stops.get(index).copied()
     }
@@ -244,14 +230,8 @@ impl FrictionCourse<'_> {
         self.is_beyond = false;
         self.knot = HistoryKnot {
             push,
-            slid: limits
-                .base()
-                .and_then(|base| base.slid(push))
-                .unwrap_or(f64::NAN),
-            end: SlidingEnd {
-                limit: Sliding::Base,
-                push,
-            },
+            slid: limits.base().and_then(|base| base.slid(push)).unwrap_or(f64::NAN),
+            end: SlidingEnd { limit: Sliding::Base, push },
         };
     }
 }

@@ -22,9 +22,7 @@ struct DissipationSegment {
 impl DissipationSegment {
     /// Energy dissipated from the start of the segment to its variable `x`. The quadrature is exact for the polynomial.
     fn until(&self, x: f64) -> f64 {
-        let sum = QUADRATURE
-            .iter()
-            .map(|[at, weight]| weight * self.power.at(at * x).0);
+        let sum = QUADRATURE.iter().map(|[at, weight]| weight * self.power.at(at * x).0);
         x * sum.sum::<f64>()
     }
 }

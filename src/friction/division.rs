@@ -71,9 +71,7 @@ impl SlidingLimit {
         };
         let inner: Vec<BTreeSet<usize>> = limits.iter().map(inner).collect();
         let pairs = limits.iter().zip(&inner).flat_map(|((limit, _), inner)| {
-            inner
-                .iter()
-                .map(move |knot| (*limit, limit.segments[*knot].from.push))
+            inner.iter().map(move |knot| (*limit, limit.segments[*knot].from.push))
         });
         let mut found = knots_at(&pairs.collect::<Vec<_>>()).into_iter();
         let begun = limits.iter().zip(&inner).map(|((limit, segments), inner)| {
@@ -93,9 +91,7 @@ impl SlidingLimit {
         });
         let mut open: Vec<OpenLimit> = begun.collect();
         for _ in 0..HALVINGS {
-            let pairs = open
-                .iter()
-                .flat_map(|open| open.middles().map(|push| (&open.limit, push)));
+            let pairs = open.iter().flat_map(|open| open.middles().map(|push| (&open.limit, push)));
             let pairs: Vec<(&Self, f64)> = pairs.collect();
             if pairs.is_empty() {
                 break;
@@ -105,9 +101,7 @@ impl SlidingLimit {
                 open.halve(middles.by_ref());
             }
         }
-        open.into_iter()
-            .map(|open| (!open.is_open.contains(&true)).then_some(open.limit))
-            .collect()
+        open.into_iter().map(|open| (!open.is_open.contains(&true)).then_some(open.limit)).collect()
     }
 
     /// Divides the segments of `limits` in which the limit reverses at the reversal, `[limit]`. A segment without the state there stays whole.
@@ -161,10 +155,7 @@ impl SlidingLimit {
                     _ => segments.push(segment.clone()),
                 }
             }
-            Self {
-                segments,
-                ..limit.clone()
-            }
+            Self { segments, ..limit.clone() }
         });
         polished.collect()
     }

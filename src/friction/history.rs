@@ -104,9 +104,7 @@ impl ContactHistory {
         let exact = SlidingLimit::exact(&limits);
         let known: Vec<SlidingLimit> = exact.iter().flatten().cloned().collect();
         let mut polished = SlidingLimit::polished(&known).into_iter();
-        let exact = exact
-            .into_iter()
-            .map(|limit| limit.and_then(|_| polished.next()));
+        let exact = exact.into_iter().map(|limit| limit.and_then(|_| polished.next()));
         let mut exact = exact.collect::<Vec<_>>().into_iter();
         let refined = histories.iter().map(|history| {
             let history = history.as_ref()?;
@@ -136,9 +134,7 @@ impl ContactHistory {
     pub(super) fn with_retreat(level: &LevelCurve) -> Option<(Self, Option<SlidingLimit>)> {
         let tip = SlidingLimit::of(std::slice::from_ref(level)).pop()??;
         let (base, retreat) = SlidingLimit::with_unstable(&opposed(level))?;
-        let limits = [Some(&tip), Some(&base), retreat.as_ref()]
-            .into_iter()
-            .flatten();
+        let limits = [Some(&tip), Some(&base), retreat.as_ref()].into_iter().flatten();
         let whole: Vec<_> = limits.map(|limit| (limit, limit.segments())).collect();
         let exact: Option<Vec<SlidingLimit>> = SlidingLimit::exact(&whole).into_iter().collect();
         let mut exact = SlidingLimit::polished(&exact?).into_iter();
@@ -153,16 +149,9 @@ impl ContactHistory {
         let mut knot = HistoryKnot {
             push: 0.0,
             slid: tip.slid(0.0).unwrap_or_default(),
-            end: SlidingEnd {
-                limit: Sliding::Tip,
-                push: 0.0,
-            },
+            end: SlidingEnd { limit: Sliding::Tip, push: 0.0 },
         };
-        let mut history = Self {
-            knots: vec![knot],
-            tip,
-            base,
-        };
+        let mut history = Self { knots: vec![knot], tip, base };
         for push in pushes {
             knot = history.advance(&knot, push, history.base.as_ref()).0;
             history.knots.push(knot);
@@ -221,9 +210,7 @@ impl ContactHistory {
         };
         let is_clear = |limit| passed(limit).is_some_and(|passed| passed > CLEAR_OF_CONTACT);
         // The contact stops at an exact reversal, but begins to slide at an interpolated place.
-        let is_begun = limit
-            .and_then(|sliding| self.limit(sliding))
-            .is_none_or(is_clear);
+        let is_begun = limit.and_then(|sliding| self.limit(sliding)).is_none_or(is_clear);
         let begins =
             limit.is_some_and(|sliding| before.end.limit != sliding && before.end.push > 0.0);
         let slides = limit.filter(|_| !begins || is_begun);

@@ -37,11 +37,7 @@ impl SlidingLimit {
             begin: knots.first_mut().filter(|_| begins).map(at_fold),
             end: knots.last_mut().filter(|_| ends).map(at_fold),
         };
-        Self {
-            level,
-            is_stable,
-            segments: LimitSegment::between(&knots, folds),
-        }
+        Self { level, is_stable, segments: LimitSegment::between(&knots, folds) }
     }
 
     /// Computes the sliding limits of `levels`, `[level]`; `None` where the continuation fails. All levels have one method, and their
@@ -109,19 +105,13 @@ impl SlidingLimit {
     pub fn near(&self, push: f64) -> Option<FrictionPoint> {
         let (segment, x) = self.place(push)?;
         let [tau, load, angle] = self.segments[segment].contact(x);
-        Some(FrictionPoint {
-            point: DVec2::new(tau, load),
-            ratio: self.level.rod.friction,
-            angle,
-        })
+        Some(FrictionPoint { point: DVec2::new(tau, load), ratio: self.level.rod.friction, angle })
     }
 
     /// Returns the index of the segment at the push angle `push` (radians), and its variable there; `None` beyond the ends.
     pub fn place(&self, push: f64) -> Option<(usize, f64)> {
         let last = self.segments.len().checked_sub(1)?;
-        let after = self
-            .segments
-            .partition_point(|segment| segment.to.push <= push);
+        let after = self.segments.partition_point(|segment| segment.to.push <= push);
         let at = after.min(last);
         let segment = &self.segments[at];
         let is_inside = segment.from.push <= push && push <= segment.to.push;
@@ -179,7 +169,5 @@ fn through(parts: &[Option<LimitPart>]) -> Vec<Option<SlidingLimit>> {
     let shot = method.map(|method| Batch::new(method).shoot::<FirstVariation>(&conditions));
     let mut shot = shot.into_iter().flatten();
     let limits = parts.iter();
-    limits
-        .map(|part| Some(part.as_ref()?.limit(&mut shot)))
-        .collect()
+    limits.map(|part| Some(part.as_ref()?.limit(&mut shot))).collect()
 }

@@ -73,11 +73,7 @@ impl<'a> FrictionTarget<'a> {
 
     /// Returns this target at another push, a magnitude in radians, with another start.
     pub fn at(&self, push: f64, start: FrictionPoint) -> Self {
-        Self {
-            signed_push: self.level.side.sign() * push,
-            start,
-            ..*self
-        }
+        Self { signed_push: self.level.side.sign() * push, start, ..*self }
     }
 
     /// Returns the level curve of the target with the force ratio `ratio`.
@@ -154,9 +150,8 @@ fn approach(targets: &[FrictionTarget], order: Approach) -> Vec<Option<FrictionS
             [Some(target.level(ratio)), beside].map(|level| Some((level?, iterate.at.point)))
         });
         let levels: Vec<(LevelCurve, DVec2)> = levels.flatten().collect();
-        let conditions = levels
-            .iter()
-            .map(|(level, point)| InitialCondition::new(&level.rod, *point));
+        let conditions =
+            levels.iter().map(|(level, point)| InitialCondition::new(&level.rod, *point));
         let shot: Vec<FirstVariation> = batch.shoot(&conditions.collect::<Vec<_>>());
         let mut shot = levels.iter().map(|(level, _)| level).zip(&shot);
         open.retain_mut(|(i, iterate)| {
@@ -261,12 +256,7 @@ impl FrictionTarget<'_> {
         jacobian: Option<DMat3>,
         residual: f64,
     ) -> FrictionStep {
-        let node = level.node(
-            iterate.at.point,
-            &here.full,
-            self.signed_push,
-            iterate.at.angle,
-        );
+        let node = level.node(iterate.at.point, &here.full, self.signed_push, iterate.at.angle);
         let is_sound = match jacobian {
             Some(jacobian) => -level.side.sign() * jacobian.determinant() > 0.0,
             None => (here.full.map.det() > 0.0) == self.is_stable,

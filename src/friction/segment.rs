@@ -51,12 +51,7 @@ impl SlidingKnot {
 
     /// Returns slid distance, contact coordinate, load and tangent angle.
     fn values(&self) -> [f64; 4] {
-        [
-            self.slid,
-            self.node.point.x,
-            self.node.point.y,
-            self.node.angle,
-        ]
+        [self.slid, self.node.point.x, self.node.point.y, self.node.angle]
     }
 
     /// Returns the derivatives of the values by the push; `None` at the fold.
@@ -126,10 +121,7 @@ impl LimitFolds {
 
     /// Returns the square roots of the distances of `push` from the folds; 0 without a fold.
     fn roots(self, push: f64) -> [f64; 2] {
-        let distances = [
-            self.begin.map(|begin| push - begin),
-            self.end.map(|end| end - push),
-        ];
+        let distances = [self.begin.map(|begin| push - begin), self.end.map(|end| end - push)];
         distances.map(|distance| distance.unwrap_or_default().max(0.0).sqrt())
     }
 }
@@ -150,9 +142,7 @@ impl LimitSegment {
     /// Returns the segments between neighbouring `knots` of a limit with these `folds`, `[segment]`.
     pub fn between(knots: &[SlidingKnot], folds: LimitFolds) -> Vec<Self> {
         let pairs = knots.windows(2);
-        pairs
-            .map(|pair| Self::new(pair[0], pair[1], folds))
-            .collect()
+        pairs.map(|pair| Self::new(pair[0], pair[1], folds)).collect()
     }
 
     /// Cubic Hermite polynomials or, where a knot is a fold, the parabolas that have the slopes of the other knot.
@@ -175,13 +165,7 @@ impl LimitSegment {
         ];
         let differences = through_runs(&values, &slopes)[0];
         let polynomial = |i: usize| Polynomial::on_even_nodes(2, differences.map(|term| term[i]));
-        Self {
-            from,
-            to,
-            folds,
-            slid: polynomial(0),
-            near: [1, 2, 3].map(polynomial),
-        }
+        Self { from, to, folds, slid: polynomial(0), near: [1, 2, 3].map(polynomial) }
     }
 
     /// Returns approximate contact coordinate, load and tangent angle at the variable `x`. They lie on the polynomials or, where a corner of
@@ -209,10 +193,7 @@ impl LimitSegment {
         let length = self.folds.length([from, to]);
         // Rounding may lead beyond a short segment.
         let push = self.folds.push(from, x * length).max(from).min(to);
-        LimitPlace {
-            push,
-            push_by_x: self.folds.slope(push) * length,
-        }
+        LimitPlace { push, push_by_x: self.folds.slope(push) * length }
     }
 
     /// Returns true if the slid distance falls anywhere.
@@ -278,21 +259,15 @@ mod tests {
     /// Whatever its folds, a segment returns from a push to its variable and back, also next to a fold, and its slope is that of the push.
     #[test]
     fn the_variable_of_a_segment_is_that_of_its_folds() {
-        for (begin, end) in [
-            (None, None),
-            (None, Some(2.0)),
-            (Some(1.0), None),
-            (Some(1.0), Some(2.0)),
-        ] {
+        for (begin, end) in
+            [(None, None), (None, Some(2.0)), (Some(1.0), None), (Some(1.0), Some(2.0))]
+        {
             let ends = [1.0, 2.0].map(|push| knot(push, 0.0, 0.0));
             let segment = LimitSegment::new(ends[0], ends[1], LimitFolds { begin, end });
             for push in [1.0 + 1e-9, 1.3, 1.5, 1.8, 2.0 - 1e-9] {
                 let x = segment.part(push);
                 let place = segment.inner(x);
-                assert!(
-                    (place.push - push).abs() < 1e-15,
-                    "{begin:?} {end:?} {push}"
-                );
+                assert!((place.push - push).abs() < 1e-15, "{begin:?} {end:?} {push}");
                 let step = 1e-4;
                 if x.min(1.0 - x) < step {
                     continue;
@@ -333,20 +308,14 @@ mod tests {
             (1.0 - 1.6 * root) / (2.0 * root)
         };
         let fold = knot(2.0, 1.0, f64::INFINITY);
-        let folds = LimitFolds {
-            begin: None,
-            end: Some(2.0),
-        };
+        let folds = LimitFolds { begin: None, end: Some(2.0) };
         let segment =
             |from: f64| LimitSegment::new(knot(from, slid(from), slope(from)), fold, folds);
         for push in [1.1, 1.5, 1.99, 2.0] {
             let found = at(&segment(1.0), push);
             assert!((found - slid(push)).abs() < 1e-14, "{push}");
         }
-        assert!(near(
-            &sorted_reversals(&segment(1.0)),
-            &[2.0 - 0.625 * 0.625]
-        ));
+        assert!(near(&sorted_reversals(&segment(1.0)), &[2.0 - 0.625 * 0.625]));
         assert!(near(&sorted_reversals(&segment(1.8)), &[]));
     }
 }

@@ -59,16 +59,11 @@ impl ContactRate {
 
     /// Returns the derivatives times `factor`.
     pub fn times(self, factor: f64) -> Self {
-        Self {
-            point: self.point * factor,
-            angle: self.angle * factor,
-            slid: self.slid * factor,
-        }
+        Self { point: self.point * factor, angle: self.angle * factor, slid: self.slid * factor }
     }
 }
 
 /// Returns the slid distance of the contact at `node`: its arclength minus the distance rolled around the pole, in whisker lengths.
 pub(super) fn slid(rod: &Rod, node: &CurveNode) -> f64 {
-    rod.pole
-        .mul_add(node.angle - node.signed_push, arclength(rod, node.point.x))
+    rod.pole.mul_add(node.angle - node.signed_push, arclength(rod, node.point.x))
 }

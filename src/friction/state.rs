@@ -21,11 +21,7 @@ pub struct FrictionPoint {
 impl FrictionPoint {
     /// Returns the point of a node of `level`, which has the force ratio of its rod.
     pub(super) fn of(level: &LevelCurve, node: &CurveNode) -> Self {
-        Self {
-            point: node.point,
-            ratio: level.rod.friction,
-            angle: node.angle,
-        }
+        Self { point: node.point, ratio: level.rod.friction, angle: node.angle }
     }
 
     /// Returns the point between `self` (`part` 0) and `to` (`part` 1).

@@ -28,15 +28,9 @@ pub fn states(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
         .collect();
     let again = doubtful.iter().flat_map(|(i, end)| {
         let query = queries[*i];
-        let slides = [Sliding::Tip, Sliding::Base].map(|limit| ContactQuery {
-            phase: ContactPhase::Slides(limit),
-            ..query
-        });
-        let end = ContactQuery {
-            phase: ContactPhase::Slides(end.limit),
-            push: end.push,
-            ..query
-        };
+        let slides = [Sliding::Tip, Sliding::Base]
+            .map(|limit| ContactQuery { phase: ContactPhase::Slides(limit), ..query });
+        let end = ContactQuery { phase: ContactPhase::Slides(end.limit), push: end.push, ..query };
         [slides[0], slides[1], end]
     });
     let again = held(&again.collect::<Vec<_>>());
@@ -60,9 +54,7 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
         ContactPhase::Slides(limit) => query.history.target(limit, query.push),
         ContactPhase::Sticks(_) => None,
     });
-    let ends = runs
-        .iter()
-        .map(|run| run.history.target(run.end.limit, run.end.push));
+    let ends = runs.iter().map(|run| run.history.target(run.end.limit, run.end.push));
     let targets: Vec<Option<FrictionTarget>> = slides.chain(ends).collect();
     let mut found = solve_known(&targets);
     let ends = found.split_off(queries.len());
@@ -86,9 +78,7 @@ pub fn held(queries: &[ContactQuery]) -> Vec<Option<FrictionState>> {
 
 /// Returns the states of limits at pushes, magnitudes in radians, `[pair]`; `None` where no state is found.
 pub(super) fn at_limits(pairs: &[(&SlidingLimit, f64)]) -> Vec<Option<FrictionState>> {
-    let targets = pairs
-        .iter()
-        .map(|(limit, push)| FrictionTarget::sliding(limit, *push));
+    let targets = pairs.iter().map(|(limit, push)| FrictionTarget::sliding(limit, *push));
     solve_known(&targets.collect::<Vec<_>>())
 }
 
@@ -104,7 +94,5 @@ fn solve_known(targets: &[Option<FrictionTarget>]) -> Vec<Option<FrictionState>>
     let known: Vec<FrictionTarget> = targets.iter().flatten().copied().collect();
     let mut solved = solve(&known).into_iter();
     let states = targets.iter();
-    states
-        .map(|target| target.and_then(|_| solved.next().flatten()))
-        .collect()
+    states.map(|target| target.and_then(|_| solved.next().flatten())).collect()
 }

@@ -147,9 +147,7 @@ impl<'a> StuckPath<'a> {
             return None;
         }
         // On each side of the end of sliding the nodes are evenly spaced.
-        let end = self
-            .nodes
-            .partition_point(|(at, _)| *at < self.end.signed_push.abs());
+        let end = self.nodes.partition_point(|(at, _)| *at < self.end.signed_push.abs());
         let side = match push < self.end.signed_push.abs() {
             true => &self.nodes[..=end],
             false => &self.nodes[end..],

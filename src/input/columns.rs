@@ -31,9 +31,8 @@ impl FromStr for ColumnName {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let pair = text
-            .split_once('=')
-            .map(|(expected, in_file)| [expected, in_file].map(str::trim));
+        let pair =
+            text.split_once('=').map(|(expected, in_file)| [expected, in_file].map(str::trim));
         match pair {
             Some([expected, in_file]) if !expected.is_empty() && !in_file.is_empty() => Ok(Self {
                 expected: expected.to_owned(),
@@ -46,12 +45,7 @@ impl FromStr for ColumnName {
 
 impl fmt::Display for ColumnName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{}={}",
-            shortened(&self.expected),
-            shortened(&self.in_file)
-        )
+        write!(f, "{}={}", shortened(&self.expected), shortened(&self.in_file))
     }
 }
 
@@ -79,19 +73,14 @@ impl CsvTable {
                 let hint = did_you_mean(expected, known.iter().copied());
                 let expected = shortened(expected);
                 let all = known.join(", ");
-                return refused(format!(
-                    "`{expected}` is not known; must be one of {all}{hint}"
-                ));
+                return refused(format!("`{expected}` is not known; must be one of {all}{hint}"));
             };
             if renamed.iter().any(|(_, other)| *other == name) {
                 return refused(format!("`{name}` is given twice"));
             }
             let places = |name: &str| {
                 let names = self.names().enumerate();
-                names
-                    .filter(|(_, other)| *other == name)
-                    .map(|(place, _)| place)
-                    .collect()
+                names.filter(|(_, other)| *other == name).map(|(place, _)| place).collect()
             };
             let found: Vec<usize> = places(in_file);
             let [place] = found[..] else {

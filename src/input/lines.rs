@@ -22,9 +22,7 @@ pub(super) fn normalised(text: &str) -> String {
 fn declared(text: &str) -> Option<char> {
     let line = text.lines().next()?.to_lowercase();
     let separator = line.trim_end_matches(' ').strip_prefix("sep=")?;
-    SEPARATORS
-        .into_iter()
-        .find(|known| separator.trim_start_matches(' ') == known.to_string())
+    SEPARATORS.into_iter().find(|known| separator.trim_start_matches(' ') == known.to_string())
 }
 
 /// Returns the separator of the columns of a CSV text: the declared one, or the most frequent one of its header, outside of quotes. If the
@@ -82,10 +80,7 @@ pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize,
         let is_comment = cells.get(0).is_some_and(|cell| cell.starts_with('#'));
         let is_declaration = has_declaration && start == 0;
         if !is_comment && !is_declaration && cells.iter().any(|cell| !cell.is_empty()) {
-            lines.push(CsvLine {
-                number: number + above,
-                cells,
-            });
+            lines.push(CsvLine { number: number + above, cells });
         }
     }
     match last {

@@ -47,10 +47,7 @@ pub fn did_you_mean<'a>(
         let (whole, per_rad) = without_per_rad(expected);
         let (stem, unit) = whole.rsplit_once('_').unwrap_or(("", whole));
         let per = if stem.ends_with("per") { "1/" } else { "" };
-        let unit = SPELLED
-            .iter()
-            .find(|(end, _)| *end == unit)
-            .map_or(unit, |(_, unit)| unit);
+        let unit = SPELLED.iter().find(|(end, _)| *end == unit).map_or(unit, |(_, unit)| unit);
         let per_rad = if per_rad { "/rad" } else { "" };
         let [radii, half] = match radius {
             Some(_) => ["radii ", ", half the diameters"],
@@ -104,9 +101,7 @@ pub(crate) fn misnamed<'a>(
 fn radius_for(name: &str) -> Option<String> {
     let name = name.to_lowercase();
     let mut words = ["diameter", "diam"].into_iter();
-    words
-        .find(|word| name.contains(word))
-        .map(|word| name.replace(word, "radius"))
+    words.find(|word| name.contains(word)).map(|word| name.replace(word, "radius"))
 }
 
 /// Returns a lower-case name without the unit at its end.
@@ -151,8 +146,7 @@ const SPELLED: [(&str, &str); 3] = [("gpa", "GPa"), ("un", "uN"), ("nnm", "nNm")
 
 /// Returns a name without `_per_rad` at its end, and whether it has this end.
 fn without_per_rad(name: &str) -> (&str, bool) {
-    name.strip_suffix("_per_rad")
-        .map_or((name, false), |name| (name, true))
+    name.strip_suffix("_per_rad").map_or((name, false), |name| (name, true))
 }
 
 /// Returns true if two names differ only in the units at their ends, and the units belong to one quantity.
@@ -203,11 +197,7 @@ mod tests {
             ("time_ms", "time_s", "s"),
             ("base_force_y_mn", "base_force_y_un", "uN"),
             ("base_moment_unmm", "base_moment_nnm", "nNm"),
-            (
-                "follicle_stiffness_mnm_per_rad",
-                "follicle_stiffness_nnm_per_rad",
-                "nNm/rad",
-            ),
+            ("follicle_stiffness_mnm_per_rad", "follicle_stiffness_nnm_per_rad", "nNm/rad"),
         ] {
             let hint = did_you_mean(name, ["side", known]);
             let start = format!("; values must be in {unit}: convert them");

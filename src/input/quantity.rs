@@ -118,9 +118,7 @@ impl Quantity {
     pub fn units(self) -> impl Iterator<Item = &'static str> {
         let default = self.unit();
         let others = self.table().iter().map(|(name, _)| *name);
-        default
-            .into_iter()
-            .chain(others.filter(move |name| Some(*name) != default))
+        default.into_iter().chain(others.filter(move |name| Some(*name) != default))
     }
 
     /// Returns the finite number in `text`, in the quantity's own unit.
@@ -196,11 +194,7 @@ impl Quantity {
 
 /// Converts a number between units of these sizes.
 fn converted(number: f64, from: f64, to: f64) -> f64 {
-    if from < to {
-        number / (to / from)
-    } else {
-        number * (from / to)
-    }
+    if from < to { number / (to / from) } else { number * (from / to) }
 }
 
 #[cfg(test)]
@@ -248,11 +242,7 @@ mod tests {
             (LengthMm, "30deg", lengths),
             (LengthMm, "15km", "unit km: must be mm"),
             (AngleDeg, "15mm", angles),
-            (
-                TimeS,
-                "20min",
-                "unit min: must be s (the default), ms or us",
-            ),
+            (TimeS, "20min", "unit min: must be s (the default), ms or us"),
             (Number, "0.9mm", "unit mm: must be left out"),
             (LengthMm, "far", "must be a length"),
             (LengthMm, "1,5", "must be a length"),

@@ -86,20 +86,14 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<String, (usize, String)> {
     for unit in char::decode_utf16(pairs.iter().map(|pair| units(*pair))) {
         let wrong = |why: std::char::DecodeUtf16Error| {
             let unit = why.unpaired_surrogate();
-            (
-                line(&text),
-                format!("not {encoding} text: code 0x{unit:04X}"),
-            )
+            (line(&text), format!("not {encoding} text: code 0x{unit:04X}"))
         };
         let unit = unit.map_err(wrong)?;
         text.push(unit);
     }
     match rest {
         [] => Ok(text),
-        _ => Err((
-            line(&text),
-            format!("not {encoding} text: half a character at the end"),
-        )),
+        _ => Err((line(&text), format!("not {encoding} text: half a character at the end"))),
     }
 }
 
@@ -107,10 +101,7 @@ fn utf8(bytes: &[u8]) -> Result<String, (usize, String)> {
     let text = str::from_utf8(bytes).map_err(|why| {
         let (before, wrong) = bytes.split_at(why.valid_up_to());
         let before = String::from_utf8_lossy(before);
-        (
-            line(&before),
-            format!("not UTF-8 text: byte 0x{:02X}", wrong[0]),
-        )
+        (line(&before), format!("not UTF-8 text: byte 0x{:02X}", wrong[0]))
     })?;
     Ok(text.to_owned())
 }

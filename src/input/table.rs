@@ -19,10 +19,7 @@ pub struct CsvError {
 impl CsvError {
     /// Creates an error about the whole CSV file `origin`.
     pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
-        Self {
-            place: escaped(origin),
-            what: what.into(),
-        }
+        Self { place: escaped(origin), what: what.into() }
     }
 
     /// Creates an error about a line of the CSV file `origin`.
@@ -126,10 +123,8 @@ impl CsvTable {
         let hint = hints.next().unwrap_or_default();
         let line = self.header.number;
         if let Some(twice) = known().find(|name| count(&[name]) > 1) {
-            let what = format!(
-                "has the column {twice} {} times: must have it once",
-                count(&[twice])
-            );
+            let what =
+                format!("has the column {twice} {} times: must have it once", count(&[twice]));
             return Err(CsvError::at(&self.origin, line, what));
         }
         if !is_right {
@@ -147,12 +142,8 @@ impl CsvTable {
             return Err(CsvError::at(&self.origin, line, what));
         }
         let unused = (!unused.is_empty()).then(|| shortened(&unused.join(", ")));
-        let note = |unused| {
-            format!(
-                "{}:{line}: columns that are not used: {unused}{hint}",
-                self.origin
-            )
-        };
+        let note =
+            |unused| format!("{}:{line}: columns that are not used: {unused}{hint}", self.origin);
         Ok(unused.map(note))
     }
 
@@ -234,9 +225,7 @@ impl CsvTable {
         must: &str,
         is_allowed: impl Fn(f64) -> bool,
     ) -> Result<Option<Vec<f64>>, CsvError> {
-        self.parsed(column, must, |cell| {
-            cell.parse().ok().filter(|number| is_allowed(*number))
-        })
+        self.parsed(column, must, |cell| cell.parse().ok().filter(|number| is_allowed(*number)))
     }
 
     /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell, `NaN`,
@@ -290,9 +279,8 @@ impl CsvTable {
     /// The first cell that is no number or out of its range, or the first line whose time does not grow.
     pub(crate) fn times_s(&self) -> Result<Vec<f64>, CsvError> {
         let must = format!("a number between -{MOST_SECONDS:e} and {MOST_SECONDS:e}");
-        let times = self
-            .numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?
-            .unwrap_or_default();
+        let times =
+            self.numbers("time_s", &must, |time| time.abs() <= MOST_SECONDS)?.unwrap_or_default();
         let mut pairs = times.windows(2).zip(self.lines().skip(1));
         match pairs.find(|(pair, _)| pair[1] <= pair[0]) {
             None => Ok(times),

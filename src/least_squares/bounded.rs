@@ -43,9 +43,7 @@ pub fn search(
         let ranges = problem.ranges(&best);
         let inside = |x: &[f64]| -> Vec<f64> {
             let pairs = x.iter().zip(&ranges);
-            pairs
-                .map(|(x, [least, most])| x.clamp(*least, *most))
-                .collect()
+            pairs.map(|(x, [least, most])| x.clamp(*least, *most)).collect()
         };
         let residuals = |x: &[f64]| {
             let refused = || vec![REFUSED; problem.count()];
@@ -83,10 +81,7 @@ pub fn search(
 
 /// Clears the columns that are so short that rounding may have made them.
 fn clear_faint(columns: &mut [Vec<f64>]) {
-    let longest = columns
-        .iter()
-        .map(|column| norm(column))
-        .fold(0.0, f64::max);
+    let longest = columns.iter().map(|column| norm(column)).fold(0.0, f64::max);
     for column in columns {
         if norm(column) <= FAINT * longest {
             column.fill(0.0);
@@ -157,13 +152,7 @@ mod tests {
     #[test]
     fn parameters_stay_along_a_direction_without_change() {
         let (end, sum) = search(&Sum, &[1.0, 2.0, 0.0], 1e-12, "").unwrap();
-        let off = end
-            .iter()
-            .zip([1.5, 2.5, 1.0])
-            .map(|(x, known)| (x - known).abs());
-        assert!(
-            off.fold(0.0, f64::max) < 1e-9 && sum < 1e-20,
-            "{end:?} {sum:e}"
-        );
+        let off = end.iter().zip([1.5, 2.5, 1.0]).map(|(x, known)| (x - known).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-9 && sum < 1e-20, "{end:?} {sum:e}");
     }
 }

@@ -8,20 +8,18 @@ pub fn smallest_degree(squares: &[Vec<f64>], exact: f64) -> usize {
     let count = squares[0].len() as f64;
     let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
     let means: Vec<f64> = squares.iter().map(|of_degree| mean(of_degree)).collect();
-    let best = (0..means.len()).fold(0, |best, degree| {
-        if means[degree] < means[best] {
-            degree
-        } else {
-            best
-        }
-    });
+    let best = (0..means.len()).fold(
+        0,
+        |best, degree| {
+            if means[degree] < means[best] { degree } else { best }
+        },
+    );
     let is_good = |degree: &usize| {
         let pairs = squares[*degree].iter().zip(&squares[best]);
         let differences: Vec<f64> = pairs.map(|(square, least)| square - least).collect();
         let excess = mean(&differences);
-        let spread = differences
-            .iter()
-            .map(|difference| (difference - excess) * (difference - excess));
+        let spread =
+            differences.iter().map(|difference| (difference - excess) * (difference - excess));
         let error = (spread.sum::<f64>() / (count * (count - 1.0))).sqrt();
         excess <= error + exact
     };

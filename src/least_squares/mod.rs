@@ -85,14 +85,8 @@ pub fn minimise<R: AsRef<[f64]>>(
                 column.iter_mut().for_each(|entry| *entry /= *scale);
             }
         }
-        let scaled = |x: &[f64]| {
-            norm(
-                &x.iter()
-                    .zip(&scales)
-                    .map(|(x, d)| x * d)
-                    .collect::<Vec<_>>(),
-            )
-        };
+        let scaled =
+            |x: &[f64]| norm(&x.iter().zip(&scales).map(|(x, d)| x * d).collect::<Vec<_>>());
         if radius.is_infinite() {
             let start = scaled(&x);
             radius = FIRST_RADIUS * if start > 0.0 { start } else { 1.0 };
@@ -132,23 +126,14 @@ pub fn minimise<R: AsRef<[f64]>>(
             let there_length = norm(there.as_ref());
             predicted /= length * length;
             let actual = 1.0 - (there_length / length) * (there_length / length);
-            let ratio = if predicted > 0.0 {
-                actual / predicted
-            } else {
-                0.0
-            };
+            let ratio = if predicted > 0.0 { actual / predicted } else { 0.0 };
             if ratio <= 0.25 || ratio.is_nan() {
                 // The minimum of a parabola through both sums with the slope here, within a tenth and a half.
-                let slope = parts
-                    .iter()
-                    .map(|(value, _, slope)| slope * slope / (value * value + damping));
+                let slope =
+                    parts.iter().map(|(value, _, slope)| slope * slope / (value * value + damping));
                 let slope = -slope.sum::<f64>() / (length * length);
                 let shrink = 0.5 * slope / (slope + 0.5 * actual);
-                let shrink = if actual >= 0.0 {
-                    0.5
-                } else {
-                    shrink.clamp(0.1, 0.5)
-                };
+                let shrink = if actual >= 0.0 { 0.5 } else { shrink.clamp(0.1, 0.5) };
                 radius = shrink * radius.min(10.0 * step_length);
             } else if damping == 0.0 || ratio >= 0.75 {
                 radius = 2.0 * step_length;

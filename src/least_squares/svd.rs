@@ -20,11 +20,7 @@ impl Svd {
     /// Algebra, 1997, algorithm 5.13). Small singular values are accurate relative to the lengths of their columns.
     pub fn new(mut images: Vec<Vec<f64>>) -> Self {
         let count = images.len();
-        let unit = |i: usize| {
-            (0..count)
-                .map(move |j| f64::from(u8::from(i == j)))
-                .collect()
-        };
+        let unit = |i: usize| (0..count).map(move |j| f64::from(u8::from(i == j))).collect();
         let mut directions: Vec<Vec<f64>> = (0..count).map(unit).collect();
         for _ in 0..SWEEPS {
             let mut is_done = true;

@@ -82,20 +82,14 @@ fn parts() -> Vec<f64> {
         let next = part + PART_STEP * part / (1.0 + 8.0 * part);
         (*part < LAST_PART).then_some(next.min(LAST_PART))
     };
-    std::iter::once(0.0)
-        .chain(std::iter::successors(Some(FIRST_PART), next))
-        .collect()
+    std::iter::once(0.0).chain(std::iter::successors(Some(FIRST_PART), next)).collect()
 }
 
 impl SheetGrid {
     /// Computes the grid of `rod` with the pole on `side`, from one contact beyond the tip inward to a thousandth of the length from the base, or the
     /// first contact without a fold.
     pub fn new(method: Method, rod: Rod, side: Side, units: Units) -> Self {
-        let case = SheetCase {
-            method,
-            rod: &rod,
-            side,
-        };
+        let case = SheetCase { method, rod: &rod, side };
         let tip = rod.tau_tip();
         let range = u_of(&rod, tip) - u_of(&rod, rod.tau(NEAREST));
         // The first contact is beyond the tip.
@@ -111,9 +105,7 @@ impl SheetGrid {
                 Some(*tau)
             })
             .collect();
-        let folds = first_folds(case, &inward)
-            .into_iter()
-            .map_while(|fold| fold);
+        let folds = first_folds(case, &inward).into_iter().map_while(|fold| fold);
         let mut contacts: Vec<[f64; 2]> = folds.map(|fold| [fold.tau, fold.q()]).collect();
         contacts.reverse();
         let parts = parts();
@@ -130,10 +122,7 @@ impl SheetGrid {
             let loads = points.iter().map(|(_, load)| *load);
             directions(0.0, loads.zip(maps))
         });
-        let clamped = Rod {
-            mount: 0.0,
-            ..rod.clone()
-        };
+        let clamped = Rod { mount: 0.0, ..rod.clone() };
         let levers = NodeLevers::new(&rod, &nodes, parts.len());
         let is_determined = levers.is_determined;
         let (in_clamp, in_follicle) = match rod.mount == 0.0 {
@@ -298,20 +287,13 @@ impl SheetGrid {
         }
         let (i, interpolated) = self.fold(tau);
         let jumps = (self.ln_qs[i + 1] - self.ln_qs[i]).abs() > FOLD_JUMP;
-        let case = SheetCase {
-            method: self.method,
-            rod: &self.rod,
-            side: self.side,
-        };
+        let case = SheetCase { method: self.method, rod: &self.rod, side: self.side };
         let q = match jumps {
             true => first_folds(case, &[tau]).pop()??.q(),
             false => interpolated,
         };
         let part = load * tau * tau / q;
-        let before = self
-            .parts
-            .partition_point(|node| *node < part)
-            .saturating_sub(1);
+        let before = self.parts.partition_point(|node| *node < part).saturating_sub(1);
         let near = self.phis[i * self.parts.len() + before];
         (part < NEAR_FOLD).then(|| nearest_turn(map.pole.to_angle(), near))
     }

@@ -60,16 +60,9 @@ pub struct SearchedPair<'a> {
 /// Second number of a searched pair.
 enum SecondNumber<'a> {
     /// Number in the frame of the clamped base: its lever, `[node]`, and the cells with a singular Jacobian and their neighbours.
-    OfBase {
-        lever: &'a [f64],
-        turns: &'a [usize],
-    },
+    OfBase { lever: &'a [f64], turns: &'a [usize] },
     /// Force along an axis in this frame: the levers of both components, `[component][node]`, and their sines with the first number.
-    AlongAxis {
-        axis: DVec2,
-        levers: [&'a [f64]; 2],
-        sines: [&'a [f64]; 2],
-    },
+    AlongAxis { axis: DVec2, levers: [&'a [f64]; 2], sines: [&'a [f64]; 2] },
 }
 
 impl<'a> SearchedPair<'a> {
@@ -84,10 +77,7 @@ impl<'a> SearchedPair<'a> {
         Self {
             first: if is_of_forces { x } else { moment },
             second: if is_of_forces || turn == 0.0 {
-                SecondNumber::OfBase {
-                    lever: &nodes.levers[second],
-                    turns: &nodes.turns[pair],
-                }
+                SecondNumber::OfBase { lever: &nodes.levers[second], turns: &nodes.turns[pair] }
             } else {
                 SecondNumber::AlongAxis {
                     axis: turned.rotate(axis),
@@ -96,11 +86,7 @@ impl<'a> SearchedPair<'a> {
                 }
             },
             forces: &nodes.forces,
-            wanted: if is_of_forces {
-                turned.rotate(wanted)
-            } else {
-                wanted
-            },
+            wanted: if is_of_forces { turned.rotate(wanted) } else { wanted },
         }
     }
 
@@ -126,11 +112,7 @@ impl<'a> SearchedPair<'a> {
                 signs.extend(nodes.map(|((first, force), second)| bits(*first, *second, *force)));
                 Cow::Borrowed(turns)
             }
-            SecondNumber::AlongAxis {
-                axis,
-                levers: [x, y],
-                sines: [by_x, by_y],
-            } => {
+            SecondNumber::AlongAxis { axis, levers: [x, y], sines: [by_x, by_y] } => {
                 let along = |x: f64, y: f64| axis.x * x + axis.y * y;
                 let nodes = nodes.zip(x).zip(y);
                 signs.extend(
@@ -146,11 +128,9 @@ impl<'a> SearchedPair<'a> {
     pub fn misses(&self, node: usize) -> DVec2 {
         let second = match self.second {
             SecondNumber::OfBase { lever, .. } => lever[node],
-            SecondNumber::AlongAxis {
-                axis,
-                levers: [x, y],
-                ..
-            } => axis.x * x[node] + axis.y * y[node],
+            SecondNumber::AlongAxis { axis, levers: [x, y], .. } => {
+                axis.x * x[node] + axis.y * y[node]
+            }
         };
         self.misses_of(DVec2::new(self.first[node], second), self.forces[node])
     }
@@ -160,9 +140,8 @@ impl<'a> SearchedPair<'a> {
 /// so many `parts` at each contact.
 fn turns(sines: impl ExactSizeIterator<Item = f64>, parts: usize) -> Vec<usize> {
     let contacts = sines.len() / parts;
-    let signs: Vec<u8> = sines
-        .map(|sine| u8::from(sine > 0.0) | u8::from(sine < 0.0) << 1)
-        .collect();
+    let signs: Vec<u8> =
+        sines.map(|sine| u8::from(sine > 0.0) | u8::from(sine < 0.0) << 1).collect();
     let mut turned = Vec::new();
     let columns = signs.chunks(parts).zip(signs.chunks(parts).skip(1));
     for (i, (here, next)) in columns.enumerate() {
@@ -209,11 +188,7 @@ impl NodeLevers {
                 is_determined[pair] |= sine > DEPENDENT;
                 // All pairs of a node have one scale, so that the sine of a turned axis is a sum.
                 let scale = gradients[0].length() * gradients[1].length();
-                if sine > SINE_ROUNDING {
-                    det / scale
-                } else {
-                    0.0
-                }
+                if sine > SINE_ROUNDING { det / scale } else { 0.0 }
             };
             gradients.iter().map(sine).collect()
         });
@@ -249,11 +224,7 @@ impl NodeForces {
         let of_base = of_base.map(|(force, moment)| compliance * force * moment);
         Self {
             sizes: forces.iter().map(|force| force.abs()).collect(),
-            angles: directions
-                .iter()
-                .zip(of_base)
-                .map(|(angle, turn)| angle + turn)
-                .collect(),
+            angles: directions.iter().zip(of_base).map(|(angle, turn)| angle + turn).collect(),
             turns: turns(sines.iter().copied(), parts),
         }
     }

@@ -128,9 +128,7 @@ impl Locator {
                 let [by_contact, by_load] = columns;
                 let det = by_contact[one] * by_load[other] - by_contact[other] * by_load[one];
                 let condition = Triangle::new(columns.map(|column| measured * column)).condition();
-                sheet_grid
-                    .is_determined(pair)
-                    .then_some(condition.copysign(det))
+                sheet_grid.is_determined(pair).then_some(condition.copysign(det))
             };
             let reading = branch.read(state);
             ContactCell {
@@ -154,11 +152,8 @@ impl Locator {
     fn counts(&self, cells: &[ContactCell], pair: usize) -> Vec<usize> {
         let readings = cells.iter().map(|cell| {
             let mut reading = cell.reading;
-            let numbers = [
-                &mut reading.moment_nnm,
-                &mut reading.force_x_un,
-                &mut reading.force_y_un,
-            ];
+            let numbers =
+                [&mut reading.moment_nnm, &mut reading.force_x_un, &mut reading.force_y_un];
             let others = numbers.into_iter().enumerate();
             for (_, number) in others.filter(|(number, _)| !PAIRS[pair].contains(number)) {
                 *number = None;
@@ -184,12 +179,8 @@ fn singular(grid: &Grid, cells: &[ContactCell], pair: usize) -> Vec<[[f64; 2]; 2
     for row in 1..grid.distance_mm.len() {
         for column in 1..columns {
             // The corners of the square, one after the other around it.
-            let corners = [
-                [row - 1, column - 1],
-                [row - 1, column],
-                [row, column],
-                [row, column - 1],
-            ];
+            let corners =
+                [[row - 1, column - 1], [row - 1, column], [row, column], [row, column - 1]];
             let known = corners.map(|[row, column]| inverses[row * columns + column]);
             let [Some((side, _)), ..] = known else {
                 continue;

@@ -145,11 +145,7 @@ impl Locator {
         let pole = Pole::smooth(pole.radius_mm);
         let units = whisker.units();
         let grid = |side| SheetGrid::new(method, whisker.rod(&pole, side), side, units);
-        Self {
-            sides: Side::BOTH.map(grid),
-            units,
-            method,
-        }
+        Self { sides: Side::BOTH.map(grid), units, method }
     }
 
     /// Returns points of the resting whisker in the frame of the base, evenly spaced from base to tip, `[point][x, y]` in mm.
@@ -158,9 +154,7 @@ impl Locator {
         let [SheetGrid { rest, .. }, _] = &self.sides;
         let place = |i: u32| rest.end() * f64::from(i) / f64::from(POINTS_AT_REST);
         let points = (0..=POINTS_AT_REST).map(|i| rest.at_arclength(place(i)).0);
-        points
-            .map(|at| (at * self.units.length_mm).to_array())
-            .collect()
+        points.map(|at| (at * self.units.length_mm).to_array()).collect()
     }
 
     /// Finds all stable states for each of the `readings`, in their order. The states of a reading are sorted by growing push angle. Each
@@ -188,10 +182,8 @@ impl Locator {
                 true => &[],
                 false => readings,
             };
-            let wanted: Vec<Wanted> = readings
-                .iter()
-                .map(|reading| self.wanted(reading, deviations))
-                .collect();
+            let wanted: Vec<Wanted> =
+                readings.iter().map(|reading| self.wanted(reading, deviations)).collect();
             let found = self.solve(&wanted, deviations.is_some());
             let first = chunk * READINGS_AT_ONCE + 1;
             let rows = wanted.iter().zip(found).enumerate();
@@ -249,9 +241,7 @@ impl Locator {
         // Gradients by the logarithms of contact and load.
         let [tau, load] = by_logarithms(&grid.rod, at);
         let [by_contact, by_load] = [full.map.by_tau * tau, full.map.by_load * load];
-        let by_distance = grid
-            .rest
-            .touch_derivative(distance, 1.0, &RodDerivative::default());
+        let by_distance = grid.rest.touch_derivative(distance, 1.0, &RodDerivative::default());
         let of_distance = DVec2::new(by_contact.x, by_load.x) / by_distance.x;
         let of_push = DVec2::new(by_contact.y, by_load.y) - by_distance.y * of_distance;
         let arclength = reading.arc_length_mm / units.length_mm;
@@ -287,10 +277,6 @@ impl Locator {
 impl LocatedState {
     /// Returns the row of the reading with this `number` without a state.
     fn without(number: usize, reason: NoLocation) -> Self {
-        Self {
-            reading: number,
-            reason: Some(reason),
-            ..Self::default()
-        }
+        Self { reading: number, reason: Some(reason), ..Self::default() }
     }
 }

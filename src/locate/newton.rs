@@ -69,12 +69,7 @@ impl Triangle {
         let mixed = along.dot(other);
         let rest = other - mixed * along;
         let second = rest.length();
-        Self {
-            pair: [along, rest / second],
-            first,
-            mixed,
-            second,
-        }
+        Self { pair: [along, rest / second], first, mixed, second }
     }
 
     /// Returns the step whose image is nearest to `residual`, as a sum of its parts in the directions of the largest and of the smallest
@@ -82,10 +77,7 @@ impl Triangle {
     fn solve(&self, residual: DVec3) -> [DVec2; 2] {
         let residual = DVec2::from(self.pair.map(|axis| axis.dot(residual)));
         let image = |step: DVec2| {
-            DVec2::new(
-                self.first * step.x + self.mixed * step.y,
-                self.second * step.y,
-            )
+            DVec2::new(self.first * step.x + self.mixed * step.y, self.second * step.y)
         };
         // Half the angle of the ellipse of the steps with an image of length 1.
         let squares = self.first.powi(2) - self.mixed.powi(2) - self.second.powi(2);
@@ -100,9 +92,7 @@ impl Triangle {
     pub fn condition(&self) -> f64 {
         let product = self.first * self.second;
         let squares = self.first.powi(2) + self.mixed.powi(2) + self.second.powi(2);
-        let difference = (squares * squares - 4.0 * product * product)
-            .max(0.0)
-            .sqrt();
+        let difference = (squares * squares - 4.0 * product * product).max(0.0).sqrt();
         0.5 * (squares + difference) / product
     }
 

@@ -21,12 +21,8 @@ pub const MOST_ANGLE: f64 = 360.0;
 
 impl BaseReadings {
     /// Names of the columns of a file of readings, in the order of the fields of [`BaseReading`]: `[column]`.
-    pub const COLUMNS: [&str; 4] = [
-        "base_moment_nnm",
-        "base_force_x_un",
-        "base_force_y_un",
-        "angle_deg",
-    ];
+    pub const COLUMNS: [&str; 4] =
+        ["base_moment_nnm", "base_force_x_un", "base_force_y_un", "angle_deg"];
 
     /// Returns the readings of a CSV table with at least two of the columns `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, and
     /// optionally `angle_deg`. A missing value, as in [`CsvTable::measurements`], is a number that was not measured.
@@ -61,9 +57,6 @@ impl BaseReadings {
             force_y_un: ys[i],
             angle_deg: angles[i],
         });
-        Ok(Self {
-            readings: readings.collect(),
-            note,
-        })
+        Ok(Self { readings: readings.collect(), note })
     }
 }

@@ -107,11 +107,7 @@ impl Locator {
         let measured = DVec3::from(given.map(|number| f64::from(u8::from(number.is_some()))));
         let in_rod = DVec3::new(units.moment_nnm, units.force_un, units.force_un);
         let sds = deviations.map(|deviations| {
-            DVec3::new(
-                deviations.moment_nnm,
-                deviations.force_un,
-                deviations.force_un,
-            )
+            DVec3::new(deviations.moment_nnm, deviations.force_un, deviations.force_un)
         });
         let mut wanted = Wanted {
             reading,
@@ -156,11 +152,7 @@ impl Locator {
         let ends = self.search(origins, points, |i, grid| wanted[i].in_follicle(grid));
         let mut found: Vec<Vec<FoundState>> = wanted.iter().map(|_| Vec::new()).collect();
         for end in ends {
-            let SearchEnd {
-                origin: (i, grid),
-                iterate,
-                last,
-            } = end;
+            let SearchEnd { origin: (i, grid), iterate, last } = end;
             let (at, full) = (iterate.point, iterate.state);
             let derivatives = base_derivatives(&grid.rod, at, &last);
             let measured = derivatives.map(|by| wanted[i].measured * by);
@@ -205,8 +197,7 @@ impl Locator {
             iterate,
             last: problem.last,
         });
-        ends.filter(|end| end.iterate.outcome == NewtonOutcome::Converged)
-            .collect()
+        ends.filter(|end| end.iterate.outcome == NewtonOutcome::Converged).collect()
     }
 }
 
@@ -228,11 +219,9 @@ impl Wanted<'_> {
         let problem = self.in_follicle(grid);
         match self.turn(grid) {
             None => problem,
-            Some(turn) => BaseProblem {
-                rod: &grid.clamped,
-                tangent: DVec2::from_angle(-turn),
-                ..problem
-            },
+            Some(turn) => {
+                BaseProblem { rod: &grid.clamped, tangent: DVec2::from_angle(-turn), ..problem }
+            }
         }
     }
 

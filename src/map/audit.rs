@@ -28,16 +28,8 @@ impl AuditSample {
     pub fn new(sheet: &Sheet, row: usize, columns: usize) -> Self {
         let cells = (sheet.rows.len() * columns) as u64;
         let distance = sheet.rows[row].pole_distance;
-        let whisker = [
-            sheet.rod.taper,
-            sheet.rod.bend,
-            sheet.rod.pole,
-            sheet.side.sign(),
-        ];
-        let numbers = whisker
-            .map(f64::to_bits)
-            .into_iter()
-            .chain([distance.to_bits(), row as u64]);
+        let whisker = [sheet.rod.taper, sheet.rod.bend, sheet.rod.pole, sheet.side.sign()];
+        let numbers = whisker.map(f64::to_bits).into_iter().chain([distance.to_bits(), row as u64]);
         Self {
             seed: numbers.fold(0, |seed, number| hash(seed ^ hash(number))),
             one_in: (cells / AT_LEAST).clamp(1, ONE_IN),
@@ -82,13 +74,7 @@ pub fn compare(
                 let theirs = cells.get(index);
                 // The residual is rounded to `f32`, and so is its bound.
                 theirs.residual <= residual_bound as f32
-                    && holds(
-                        batch,
-                        (row, column),
-                        row_residual,
-                        &theirs,
-                        &found.get(from),
-                    )
+                    && holds(batch, (row, column), row_residual, &theirs, &found.get(from))
             }
             _ => continue,
         };
@@ -162,9 +148,7 @@ mod tests {
             let parts: Vec<u64> = all.iter().map(|cell| *cell as u64 / one_in).collect();
             assert_eq!(parts, (0..1792 / one_in).collect::<Vec<_>>());
             for step in [1, 5, 100, 257] {
-                let ranges = (0..1792)
-                    .step_by(step)
-                    .map(|from| from..1792.min(from + step));
+                let ranges = (0..1792).step_by(step).map(|from| from..1792.min(from + step));
                 let joined: Vec<usize> = ranges.flat_map(|range| sample(3).of(range)).collect();
                 assert_eq!(joined, all);
             }
@@ -184,10 +168,7 @@ mod tests {
     /// Rows shorter than a part have equally many cells in all.
     #[test]
     fn short_rows_are_sampled_as_often() {
-        let rows = (0..4096).map(|row| AuditSample {
-            seed: hash(row),
-            one_in: 256,
-        });
+        let rows = (0..4096).map(|row| AuditSample { seed: hash(row), one_in: 256 });
         let count = rows.map(|row| row.of(0..16).count()).sum::<usize>();
         // 256 of 65,536 cells, give or take four standard deviations.
         assert!((192..=320).contains(&count), "{count}");

@@ -34,10 +34,7 @@ pub fn solve(
     });
     let pieces: Vec<Option<Vec<CurveNode>>> = pieces.collect();
     for &column in columns {
-        let (push, signed_push) = (
-            side.columns.pushes[column],
-            side.columns.signed_push(column),
-        );
+        let (push, signed_push) = (side.columns.pushes[column], side.columns.signed_push(column));
         let steps = cells.steps[column];
         let solved = |state: &ContactState| side.solved(row, signed_push, state, steps, true);
         let mut spans = boundary.spans().iter().zip(&pieces);

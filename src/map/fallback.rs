@@ -38,10 +38,7 @@ pub fn complete(
             counts.add_others(without, has_failed);
             return (cells, audit);
         }
-        let solved = cells
-            .outcome
-            .iter()
-            .filter(|outcome| **outcome == Outcome::Solved);
+        let solved = cells.outcome.iter().filter(|outcome| **outcome == Outcome::Solved);
         audit.turned_over = solved.count() as u64;
     }
     let cells = cpu.solve(batch);
@@ -58,10 +55,7 @@ const fn may_have_state(outcome: Outcome) -> bool {
 
 /// Returns true if the CPU only audits cells with this outcome of an engine.
 const fn is_final(outcome: Outcome) -> bool {
-    matches!(
-        outcome,
-        Outcome::Solved | Outcome::BeyondTip | Outcome::OffSheet
-    )
+    matches!(outcome, Outcome::Solved | Outcome::BeyondTip | Outcome::OffSheet)
 }
 
 /// The cells that the CPU solves: cells without a certificate, and the sample of the audit.

@@ -50,9 +50,7 @@ pub fn replace(
             add_strains(side, &mut cells);
         }
         let ends = rows.iter().zip(histories).filter(|(row, history)| {
-            let sliding = history
-                .as_ref()
-                .and_then(|history| history.sliding_at_end(row.end_push));
+            let sliding = history.as_ref().and_then(|history| history.sliding_at_end(row.end_push));
             sliding.is_some_and(|sliding| sliding != Sliding::Tip)
         });
         let ends: Vec<usize> = ends.map(|(row, _)| row.row - first_row).collect();
@@ -92,19 +90,10 @@ fn cells(
             {
                 if sliding != Some(Sliding::Tip) {
                     wanted.push((row.row, columns.signed_push(column), cell));
-                    queries.push(ContactQuery {
-                        history,
-                        push,
-                        phase,
-                    });
+                    queries.push(ContactQuery { history, push, phase });
                 }
             } else if sliding != Some(Sliding::Tip) {
-                unsolved.push(FrictionCell {
-                    cell,
-                    sliding,
-                    state: None,
-                    strain: f32::NAN,
-                });
+                unsolved.push(FrictionCell { cell, sliding, state: None, strain: f32::NAN });
             }
         }
     }
@@ -124,9 +113,7 @@ fn cells(
 
 /// Adds the largest bending strains of the states of `cells`.
 fn add_strains(side: &WhiskerSide, cells: &mut [FrictionCell]) {
-    let states = cells
-        .iter()
-        .filter_map(|cell| Some(&cell.state.as_ref()?.0));
+    let states = cells.iter().filter_map(|cell| Some(&cell.state.as_ref()?.0));
     let strains = side.peak_strains_with_friction(&states.collect::<Vec<_>>());
     let solved = cells.iter_mut().filter(|cell| cell.state.is_some());
     for (cell, strain) in solved.zip(strains) {

@@ -46,9 +46,7 @@ pub fn run<E: Send>(
     let description = EngineDescription::of(engine.as_deref());
     let (start, cpu_start) = (Stopwatch::start(), process_seconds());
     let effects = plan.method.effects;
-    let integrates = engine
-        .as_ref()
-        .is_some_and(|engine| engine.integrates_nodes(effects));
+    let integrates = engine.as_ref().is_some_and(|engine| engine.integrates_nodes(effects));
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, |worker| {
         let mut pipeline = Pipeline::new(scene, plan, worker, integrates);

@@ -22,12 +22,7 @@ impl PendingNets {
     /// Begins nets with a residual of at most `most` whisker lengths for `sides`: submits the first trajectories to the engine of `worker`.
     pub fn new(sides: Vec<WhiskerSide>, method: Method, most: f64, worker: &mut Worker) -> Self {
         let drafts = sides.par_iter().map(|side| side.draft(most)).collect();
-        let mut nets = Self {
-            sides,
-            drafts,
-            method,
-            submitted: None,
-        };
+        let mut nets = Self { sides, drafts, method, submitted: None };
         nets.submit(worker);
         nets
     }
@@ -42,11 +37,7 @@ impl PendingNets {
         let nodes = Arc::new(Nodes {
             method: self.method,
             points: points.collect(),
-            rods: self
-                .sides
-                .iter()
-                .map(|side| side.sheet.rod.clone())
-                .collect(),
+            rods: self.sides.iter().map(|side| side.sheet.rod.clone()).collect(),
         });
         self.submitted = (nodes.count() > 0).then_some(nodes);
         if let Some(nodes) = &self.submitted {

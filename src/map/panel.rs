@@ -116,9 +116,7 @@ impl Panel {
     /// channels.
     #[must_use]
     pub fn push_derivative_mut(&mut self, name: &str) -> Option<&mut Vec<f32>> {
-        let place = DERIVATIVES
-            .iter()
-            .position(|derivative| *derivative == name)?;
+        let place = DERIVATIVES.iter().position(|derivative| *derivative == name)?;
         Some(&mut self.push_derivatives[place])
     }
 
@@ -129,11 +127,7 @@ impl Panel {
             "status" => &self.status,
             "newton_steps" => &self.newton_steps,
             _ => {
-                let by = || {
-                    DERIVATIVES
-                        .iter()
-                        .position(|derivative| *derivative == name)
-                };
+                let by = || DERIVATIVES.iter().position(|derivative| *derivative == name);
                 let values = match Channel::of(name) {
                     Some(channel) => self.channel(channel),
                     None => by().map_or(&[][..], |place| &self.push_derivatives[place]),
@@ -146,27 +140,16 @@ impl Panel {
 
     /// Returns the regime of each cell of the panel, in the order of [`Panel::regime`].
     pub fn regimes(&self) -> impl ExactSizeIterator<Item = Regime> + '_ {
-        let of = |code: &u32| {
-            Regime::ALL
-                .into_iter()
-                .find(|regime| regime.code() == *code)
-        };
-        self.regime
-            .iter()
-            .map(move |code| of(code).unwrap_or(Regime::Unresolved))
+        let of = |code: &u32| Regime::ALL.into_iter().find(|regime| regime.code() == *code);
+        self.regime.iter().map(move |code| of(code).unwrap_or(Regime::Unresolved))
     }
 
     /// Returns the `rows` of a panel that is `width` cells wide, which can be written in parallel.
     pub(super) fn rows_mut(&mut self, width: usize, rows: Range<usize>) -> Vec<RowMut<'_>> {
         let cells = rows.start * width..rows.end * width;
-        let mut state = self
-            .state
-            .each_mut()
-            .map(|channel| rows_of(channel, &cells, width));
-        let mut push_derivatives = self
-            .push_derivatives
-            .each_mut()
-            .map(|channel| rows_of(channel, &cells, width));
+        let mut state = self.state.each_mut().map(|channel| rows_of(channel, &cells, width));
+        let mut push_derivatives =
+            self.push_derivatives.each_mut().map(|channel| rows_of(channel, &cells, width));
         let mut peak_strain = rows_of(&mut self.peak_strain, &cells, width);
         let [regime, status, newton_steps] =
             [&mut self.regime, &mut self.status, &mut self.newton_steps]
@@ -175,22 +158,18 @@ impl Panel {
             .map(|numbers| numbers[cells.clone()].chunks_mut(width));
         let codes = regime.zip(status).zip(newton_steps);
         let rows = codes.zip(residual.zip(margin_deg));
-        rows.map(
-            |(((regime, status), newton_steps), (residual, margin_deg))| RowMut {
-                regime,
-                status,
-                state: state
-                    .each_mut()
-                    .map(|channel| channel.next().unwrap_or_default()),
-                residual,
-                margin_deg,
-                peak_strain: peak_strain.next().unwrap_or_default(),
-                push_derivatives: push_derivatives
-                    .each_mut()
-                    .map(|channel| channel.next().unwrap_or_default()),
-                newton_steps,
-            },
-        )
+        rows.map(|(((regime, status), newton_steps), (residual, margin_deg))| RowMut {
+            regime,
+            status,
+            state: state.each_mut().map(|channel| channel.next().unwrap_or_default()),
+            residual,
+            margin_deg,
+            peak_strain: peak_strain.next().unwrap_or_default(),
+            push_derivatives: push_derivatives
+                .each_mut()
+                .map(|channel| channel.next().unwrap_or_default()),
+            newton_steps,
+        })
         .collect()
     }
 }
@@ -212,10 +191,6 @@ pub(super) struct RowMut<'a> {
 
 /// The rows of these cells of a channel; none if it is not computed.
 fn rows_of<'a>(channel: &'a mut [f32], cells: &Range<usize>, width: usize) -> ChunksMut<'a, f32> {
-    let cells = if channel.is_empty() {
-        0..0
-    } else {
-        cells.clone()
-    };
+    let cells = if channel.is_empty() { 0..0 } else { cells.clone() };
     channel[cells].chunks_mut(width)
 }

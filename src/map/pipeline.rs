@@ -298,10 +298,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let summary = &mut self.summary;
         let has_failed = self.worker.failure.is_some();
         let counts = &mut summary.engine_cells;
-        let bounds = (
-            self.worker.residual_bound,
-            self.worker.row_residual.unwrap_or(0.0),
-        );
+        let bounds = (self.worker.residual_bound, self.worker.row_residual.unwrap_or(0.0));
         let cells = cells.map(|cells| (cells, bounds));
         let (mut cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;

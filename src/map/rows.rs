@@ -21,9 +21,7 @@ pub fn fill(
         batch.rows.iter().zip(cells.rows_mut(batch)).collect();
     let panel_of = |row: &BatchRow| row.side / sides_per_panel;
     let first_panel = batch.rows.first().map_or(0, panel_of);
-    let by_panel: Vec<_> = rows
-        .chunk_by_mut(|(a, _), (b, _)| panel_of(a) == panel_of(b))
-        .collect();
+    let by_panel: Vec<_> = rows.chunk_by_mut(|(a, _), (b, _)| panel_of(a) == panel_of(b)).collect();
     let panels = panels[first_panel..].par_iter_mut().zip(by_panel);
     panels.for_each(|(panel, rows)| {
         // The columns of two sides may be in one row of a panel.
@@ -75,10 +73,7 @@ impl RowWriter<'_, '_> {
         let (side, row) = (self.side, self.row);
         let pushes = &side.columns.pushes;
         let is_reached = side.sheet.rows[row].is_reached();
-        let touches = pushes
-            .iter()
-            .take_while(|push| **push == 0.0 && is_reached)
-            .count();
+        let touches = pushes.iter().take_while(|push| **push == 0.0 && is_reached).count();
         for column in 0..touches {
             let touch = side.first_touch(row, self.cells.steps[column]);
             self.cells.set(column, &touch);
@@ -107,10 +102,7 @@ impl RowWriter<'_, '_> {
             self.contacts.sort_unstable();
         }
         if !self.strained.is_empty() {
-            let points = self
-                .strained
-                .iter()
-                .map(|column| self.cells.points[*column]);
+            let points = self.strained.iter().map(|column| self.cells.points[*column]);
             for (column, strain) in self.strained.iter().zip(side.peak_strains(points)) {
                 let run = *column..column + 1;
                 side.columns.write(self.into.peak_strain, &run, |_| strain);
@@ -119,11 +111,7 @@ impl RowWriter<'_, '_> {
         // Without a push from first touch there is no history.
         let end_push = self.boundary.detachment().map(PushSpan::to);
         let end_push = end_push.filter(|end| side.has_friction() && *end > TIE)?;
-        Some(FrictionRow {
-            row,
-            end_push,
-            contacts: self.contacts,
-        })
+        Some(FrictionRow { row, end_push, contacts: self.contacts })
     }
 
     /// Writes a run of cells with one outcome and one verdict, given by the columns of the side. Keeps the cells in doubt and, with friction, the
@@ -160,11 +148,7 @@ impl RowWriter<'_, '_> {
                 let derivatives = self.side.push_derivatives.get(self.row);
                 for (parameter, by) in derivatives.into_iter().flatten() {
                     // Only a push from first touch ends at the row's detachment.
-                    let by = if regime == Regime::Contact {
-                        *by
-                    } else {
-                        f32::NAN
-                    };
+                    let by = if regime == Regime::Contact { *by } else { f32::NAN };
                     columns.write(into.push_derivatives[*parameter as usize], &run, |_| by);
                 }
                 for (channel, values) in into.state.iter_mut().zip(&cells.values) {
@@ -225,10 +209,7 @@ mod tests {
         let mut cells = Cpu::default().solve(&batch);
         let sound = regimes(&mut cells);
         let [first, last] = [sound[0], sound[sound.len() - 1]];
-        assert_eq!(
-            [first, last],
-            [Regime::Contact, Regime::SlipOff].map(Regime::code)
-        );
+        assert_eq!([first, last], [Regime::Contact, Regime::SlipOff].map(Regime::code));
         cells.outcome.fill(Outcome::Solved);
         assert_eq!(regimes(&mut cells), sound);
     }

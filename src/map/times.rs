@@ -115,15 +115,9 @@ mod windows {
     fn seconds(times: Times, handle: isize) -> Option<f64> {
         let [mut start, mut end, mut system, mut user] = [0; 4];
         // SAFETY: each pointer is to a number of 64 bits, and the handle is that of the caller itself.
-        let is_known = unsafe {
-            times(
-                handle,
-                &raw mut start,
-                &raw mut end,
-                &raw mut system,
-                &raw mut user,
-            )
-        } != 0;
+        let is_known =
+            unsafe { times(handle, &raw mut start, &raw mut end, &raw mut system, &raw mut user) }
+                != 0;
         is_known.then(|| 1e-7 * (system + user) as f64)
     }
 }

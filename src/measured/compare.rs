@@ -82,11 +82,8 @@ impl MeasuredPoints {
     /// Returns one line for the points with a missing value; `None` without such points.
     #[must_use]
     pub fn missing(&self) -> Option<String> {
-        let lines: Vec<String> = self
-            .incomplete
-            .iter()
-            .map(|point| point.line.to_string())
-            .collect();
+        let lines: Vec<String> =
+            self.incomplete.iter().map(|point| point.line.to_string()).collect();
         let count = self.points.len() + lines.len();
         (!lines.is_empty()).then(|| {
             format!(
@@ -164,12 +161,7 @@ impl MeasuredPoints {
         variables: &[Variable],
     ) -> Option<Vec<Vec<f64>>> {
         let ends = Side::BOTH.map(|side| {
-            let pushed = PushedWhisker {
-                whisker,
-                pole,
-                side,
-                distances_mm: &self.distances(side),
-            };
+            let pushed = PushedWhisker { whisker, pole, side, distances_mm: &self.distances(side) };
             let detail = EndDetail::State;
             detachments_of(Resolution::FINE, &[pushed], detail, variables).concat()
         });

@@ -9,11 +9,8 @@ use std::path::Path;
 use whiskmap_mechanics::rod::{Rest, Side};
 
 /// Required columns of a file: one of each group.
-const NEEDED: [&[&str]; 3] = [
-    &["side"],
-    &["distance_mm"],
-    &[MeasuredAngle::Push.column(), MeasuredAngle::Chord.column()],
-];
+const NEEDED: [&[&str]; 3] =
+    [&["side"], &["distance_mm"], &[MeasuredAngle::Push.column(), MeasuredAngle::Chord.column()]];
 
 /// Optional columns of a file.
 const OPTIONAL: [&str; 3] = ["kind", "sd_deg", "whisker"];
@@ -104,24 +101,20 @@ impl MeasuredPoints {
         };
         let indices: Option<Vec<usize>> =
             names.map(|names| names.into_iter().map(&mut index_of).collect());
-        let rows = table.lines().zip(sides.unwrap_or_default()).zip(
-            distances_mm
-                .unwrap_or_default()
-                .into_iter()
-                .zip(angles_deg.unwrap_or_default()),
-        );
+        let rows = table
+            .lines()
+            .zip(sides.unwrap_or_default())
+            .zip(distances_mm.unwrap_or_default().into_iter().zip(angles_deg.unwrap_or_default()));
         let points =
-            rows.enumerate().map(
-                |(i, ((line, side), (distance_mm, angle_deg)))| MeasuredPoint {
-                    line,
-                    whisker: indices.as_ref().map_or(0, |all| all[i]),
-                    side,
-                    distance_mm,
-                    angle_deg,
-                    kind: kinds.as_ref().and_then(|kinds| kinds[i]),
-                    sd_deg: deviations_deg.as_ref().map_or(1.0, |all| all[i]),
-                },
-            );
+            rows.enumerate().map(|(i, ((line, side), (distance_mm, angle_deg)))| MeasuredPoint {
+                line,
+                whisker: indices.as_ref().map_or(0, |all| all[i]),
+                side,
+                distance_mm,
+                angle_deg,
+                kind: kinds.as_ref().and_then(|kinds| kinds[i]),
+                sd_deg: deviations_deg.as_ref().map_or(1.0, |all| all[i]),
+            });
         let (points, incomplete): (Vec<_>, Vec<_>) = points.partition(|point| {
             let numbers = [point.distance_mm, point.angle_deg, point.sd_deg];
             !numbers.into_iter().any(f64::is_nan)

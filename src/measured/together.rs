@@ -58,9 +58,7 @@ impl MeasuredPoints {
         let mut indexed = whiskers.iter().enumerate();
         indexed.find_map(|(index, swept)| {
             let points = self.of_whisker(index);
-            points
-                .first_out_of_reach(&swept.whisker, &swept.pole)
-                .copied()
+            points.first_out_of_reach(&swept.whisker, &swept.pole).copied()
         })
     }
 
@@ -90,9 +88,7 @@ impl MeasuredPoints {
         });
         let derivatives: Vec<Vec<Vec<f64>>> = derivatives.collect::<Option<_>>()?;
         let of_variable = |variable: usize| {
-            let values = derivatives
-                .iter()
-                .map(|of_whisker| of_whisker[variable].clone());
+            let values = derivatives.iter().map(|of_whisker| of_whisker[variable].clone());
             self.in_order(values.collect())
         };
         Some((0..variables.len()).map(of_variable).collect())
@@ -102,8 +98,6 @@ impl MeasuredPoints {
     fn in_order<T>(&self, values: Vec<Vec<T>>) -> Vec<T> {
         let mut values: Vec<_> = values.into_iter().map(Vec::into_iter).collect();
         let points = self.points.iter();
-        points
-            .filter_map(|point| values[point.whisker].next())
-            .collect()
+        points.filter_map(|point| values[point.whisker].next()).collect()
     }
 }

@@ -18,24 +18,17 @@ impl MeasuredPoints {
         };
         let index = self.whiskers.iter().position(|known| known == name);
         let measured = index.map(|index| self.of_whisker(index));
-        measured
-            .filter(|measured| !measured.points.is_empty())
-            .ok_or_else(|| {
-                let what = format!("has no point of the whisker {}", shortened(name));
-                CsvError::whole(&self.origin, what)
-            })
+        measured.filter(|measured| !measured.points.is_empty()).ok_or_else(|| {
+            let what = format!("has no point of the whisker {}", shortened(name));
+            CsvError::whole(&self.origin, what)
+        })
     }
 
     /// Returns the points of the whisker with this index, as points without names.
     pub(super) fn of_whisker(&self, index: usize) -> Self {
         let of_index = |points: &[MeasuredPoint]| {
             let selected = points.iter().filter(|point| point.whisker == index);
-            selected
-                .map(|point| MeasuredPoint {
-                    whisker: 0,
-                    ..*point
-                })
-                .collect()
+            selected.map(|point| MeasuredPoint { whisker: 0, ..*point }).collect()
         };
         Self {
             origin: self.origin.clone(),

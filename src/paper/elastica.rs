@@ -44,10 +44,7 @@ pub fn elastica(beta: f64) -> Elastica {
 /// Returns the state of a straight cylinder with the largest push angle: the saddle-node.
 #[must_use]
 pub fn fold() -> Elastica {
-    let turns = Bracket {
-        below: 0.99 * PI,
-        above: FRAC_PI_2,
-    };
+    let turns = Bracket { below: 0.99 * PI, above: FRAC_PI_2 };
     elastica(turns.bisect(|beta| elastica(beta).slope))
 }
 

@@ -36,9 +36,7 @@ fn straight_cylinder() -> Vec<Check> {
     let end = end(&STRAIGHT_CYLINDER, &POINT, Side::Cb, 8.0);
     let arc = end.arc_length_mm.map(|arc| arc / 8.0);
     let corner = corner(&STRAIGHT_CYLINDER, &POINT, Side::Cb);
-    let reach = corner
-        .distance_mm
-        .map(|mm| mm / STRAIGHT_CYLINDER.length_mm);
+    let reach = corner.distance_mm.map(|mm| mm / STRAIGHT_CYLINDER.length_mm);
     let exact = elastica(60_f64.to_radians());
     let at_60 = "straight cylinder, pushed by 39.75122968 deg";
     let turned = pushed(&STRAIGHT_CYLINDER, 8.0, 39.751_229_68_f64.to_radians()).ok();
@@ -65,26 +63,24 @@ fn straight_cylinder() -> Vec<Check> {
 /// smaller by the square of the angle.
 fn straight_cone() -> Vec<Check> {
     let push = 1e-5;
-    [
-        ("perfect cone", STRAIGHT_CONE),
-        ("truncated cone", STRAIGHT_WHISKER),
-    ]
-    .into_iter()
-    .flat_map(|(name, cone)| [5.0, 15.0].map(|a| (name, cone.clone(), a)))
-    .map(|(name, cone, a)| {
-        let length = cone.length_mm / (1.0 - cone.tip_radius_um / cone.base_radius_um);
-        let units = cone.units();
-        let exact = 3.0 * units.moment_nnm * cone.length_mm * push * (length - a) / (a * length);
-        let moment = pushed(&cone, a, push).map(|(_, reading)| reading.base_moment_nnm);
-        near(
-            format!("straight {name} at a = {a} mm, small load"),
-            "base moment over formula",
-            CLOSED,
-            (1.0, 1e-8),
-            moment.ok().map(|moment| moment / exact),
-        )
-    })
-    .collect()
+    [("perfect cone", STRAIGHT_CONE), ("truncated cone", STRAIGHT_WHISKER)]
+        .into_iter()
+        .flat_map(|(name, cone)| [5.0, 15.0].map(|a| (name, cone.clone(), a)))
+        .map(|(name, cone, a)| {
+            let length = cone.length_mm / (1.0 - cone.tip_radius_um / cone.base_radius_um);
+            let units = cone.units();
+            let exact =
+                3.0 * units.moment_nnm * cone.length_mm * push * (length - a) / (a * length);
+            let moment = pushed(&cone, a, push).map(|(_, reading)| reading.base_moment_nnm);
+            near(
+                format!("straight {name} at a = {a} mm, small load"),
+                "base moment over formula",
+                CLOSED,
+                (1.0, 1e-8),
+                moment.ok().map(|moment| moment / exact),
+            )
+        })
+        .collect()
 }
 
 /// Checks of quantities that scaling and mirroring leave alone.

@@ -91,13 +91,11 @@ fn friction() -> impl Iterator<Item = Check> {
     ];
     known.into_iter().flat_map(|(case, friction, cb, cf)| {
         let pole = Pole { friction, ..POLE };
-        [
-            ("slip-off CB (deg)", Side::Cb, cb),
-            ("slip-off CF (deg)", Side::Cf, cf),
-        ]
-        .map(|(quantity, side, expected)| {
-            let push = push_if(SlipOff, &end(&CONE, &pole, side, TOUCH_MM));
-            near(case, quantity, FORWARD, (expected, 5e-5), push)
-        })
+        [("slip-off CB (deg)", Side::Cb, cb), ("slip-off CF (deg)", Side::Cf, cf)].map(
+            |(quantity, side, expected)| {
+                let push = push_if(SlipOff, &end(&CONE, &pole, side, TOUCH_MM));
+                near(case, quantity, FORWARD, (expected, 5e-5), push)
+            },
+        )
     })
 }

@@ -44,8 +44,7 @@ impl ReferencePoint {
         let end = curve(&whisker, &pole, side, &[self.distance_mm])[0];
         let miss = |computed: Option<f64>, known: f64| {
             let miss = computed.map(|computed| (computed - known).abs());
-            miss.filter(|miss| miss.is_finite())
-                .unwrap_or(f64::INFINITY)
+            miss.filter(|miss| miss.is_finite()).unwrap_or(f64::INFINITY)
         };
         [
             f64::from(u8::from(end.kind != self.kind)),
@@ -62,10 +61,8 @@ pub fn checks() -> Vec<Check> {
         .filter_map(Result::ok)
         .filter(|point: &ReferencePoint| point.modulus_gradient == 0.0)
         .collect();
-    let worst = points
-        .iter()
-        .map(ReferencePoint::differences)
-        .fold([0.0_f64; 3], |worst, differences| {
+    let worst =
+        points.iter().map(ReferencePoint::differences).fold([0.0_f64; 3], |worst, differences| {
             std::array::from_fn(|i| worst[i].max(differences[i]))
         });
     let count = points.len() as f64;

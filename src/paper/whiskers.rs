@@ -43,10 +43,7 @@ pub const FIG5_RIGHT: Whisker = {
 pub const fn whisker([length_mm, base, tip]: [f64; 3], a_per_mm: f64, vertex_mm: f64) -> Whisker {
     let mut whisker = Whisker::cone(length_mm, [base, tip], 3.0);
     if a_per_mm > 0.0 {
-        whisker.curvature = Some(Curvature {
-            parabola_per_mm: a_per_mm,
-            vertex_mm,
-        });
+        whisker.curvature = Some(Curvature { parabola_per_mm: a_per_mm, vertex_mm });
     }
     whisker
 }
@@ -60,8 +57,5 @@ pub fn pole_distance_mm(whisker: &Whisker, side: Side) -> f64 {
 
 /// Returns a cylinder with the length, the base and the curvature of `whisker`.
 pub fn cylinder_of(whisker: &Whisker) -> Whisker {
-    Whisker {
-        tip_radius_um: whisker.base_radius_um,
-        ..whisker.clone()
-    }
+    Whisker { tip_radius_um: whisker.base_radius_um, ..whisker.clone() }
 }

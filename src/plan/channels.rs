@@ -75,12 +75,7 @@ impl Channel {
 }
 
 /// Line of the table of channels: name, unit, meaning, and label in pictures.
-pub(crate) type ChannelLine = (
-    &'static str,
-    Option<&'static str>,
-    &'static str,
-    &'static str,
-);
+pub(crate) type ChannelLine = (&'static str, Option<&'static str>, &'static str, &'static str);
 
 /// All channels but the derivatives, in their order in files. Codes and counts have no unit.
 #[rustfmt::skip]
@@ -242,10 +237,7 @@ impl FromStr for Channels {
     /// Parses names with commas between them.
     fn from_str(list: &str) -> Result<Self, String> {
         let wanted: Vec<&str> = list.split(',').map(str::trim).collect();
-        match wanted
-            .iter()
-            .find(|name| !names().any(|known| known == **name))
-        {
+        match wanted.iter().find(|name| !names().any(|known| known == **name)) {
             Some(unknown) => Err(format!(
                 "must be names with commas between them, out of {}, {PEAK_STRAIN}, and derivatives such as d_push_d_taper{}",
                 Self::STANDARD,
@@ -266,10 +258,6 @@ mod tests {
         let names = CHANNELS.iter().map(|(name, ..)| *name);
         let states = names.skip(FIRST_STATE).take(STATE_CHANNELS.len());
         assert!(states.eq(STATE_CHANNELS));
-        assert!(
-            Channel::ALL
-                .iter()
-                .all(|channel| Channel::of(channel.name()) == Some(*channel))
-        );
+        assert!(Channel::ALL.iter().all(|channel| Channel::of(channel.name()) == Some(*channel)));
     }
 }

@@ -33,10 +33,7 @@ pub struct Digits {
 
 impl Digits {
     /// All bits of every channel.
-    pub const ALL: Self = Self {
-        named: [None; Channel::ALL.len()],
-        others: LIMITS[1],
-    };
+    pub const ALL: Self = Self { named: [None; Channel::ALL.len()], others: LIMITS[1] };
 
     /// Names each of `channels` that is rounded; all bits of other channels are kept.
     #[must_use]
@@ -85,27 +82,15 @@ pub fn rounded(value: f32, bits: u32) -> f32 {
     let half = (1 << dropped >> 1) - u32::from(dropped > 0);
     let is_odd = all >> dropped & u32::from(dropped > 0);
     let nearest = f32::from_bits(all.wrapping_add(half + is_odd) >> dropped << dropped);
-    if value.is_normal() && nearest.is_finite() {
-        nearest
-    } else {
-        value
-    }
+    if value.is_normal() && nearest.is_finite() { nearest } else { value }
 }
 
 impl fmt::Display for Digits {
     /// Writes the list that [`Digits::from_str`] parses.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let others = (self.others != LIMITS[1]).then(|| self.others.to_string());
-        let named = self
-            .named()
-            .map(|(name, digits)| format!("{name}={digits}"));
-        f.write_str(
-            &others
-                .into_iter()
-                .chain(named)
-                .collect::<Vec<_>>()
-                .join(", "),
-        )
+        let named = self.named().map(|(name, digits)| format!("{name}={digits}"));
+        f.write_str(&others.into_iter().chain(named).collect::<Vec<_>>().join(", "))
     }
 }
 
@@ -119,10 +104,7 @@ impl FromStr for Digits {
         let mut others = None;
         for entry in list.split(',').map(str::trim) {
             let (name, number) = entry.split_once('=').unwrap_or(("", entry));
-            let number = number
-                .parse()
-                .ok()
-                .filter(|number| (least..=most).contains(number));
+            let number = number.parse().ok().filter(|number| (least..=most).contains(number));
             let number = number.ok_or_else(|| {
                 format!(
                     "`{entry}`: must be N or NAME=N, N a whole number between {least} and {most}"
@@ -137,10 +119,7 @@ impl FromStr for Digits {
                 return Err(format!("`{entry}`: must be given once"));
             }
         }
-        Ok(Self {
-            named,
-            others: others.unwrap_or(most),
-        })
+        Ok(Self { named, others: others.unwrap_or(most) })
     }
 }
 
@@ -165,18 +144,13 @@ mod tests {
     fn half_unit(value: f32, digits: i32) -> f64 {
         // Rust prints the shortest digits, with the exact exponent.
         let text = format!("{:e}", f64::from(value.abs()));
-        let exponent = text
-            .split_once('e')
-            .and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+        let exponent = text.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
         0.5 * 10_f64.powi(exponent.unwrap_or_default() - digits + 1)
     }
 
     fn check(value: f32) {
         for digits in 2..=6_u8 {
-            let all = Digits {
-                others: digits,
-                ..Digits::ALL
-            };
+            let all = Digits { others: digits, ..Digits::ALL };
             let bits = all.mantissa_bits("force_un").unwrap_or_default();
             let found = rounded(value, bits);
             assert_eq!(rounded(found, bits).to_bits(), found.to_bits(), "{value}");
@@ -199,14 +173,7 @@ mod tests {
 
     #[test]
     fn edge_values_are_within_half_a_unit() {
-        let numbers = [
-            0.0,
-            f32::MIN_POSITIVE,
-            1e-45,
-            f32::MAX,
-            f32::INFINITY,
-            f32::NAN,
-        ];
+        let numbers = [0.0, f32::MIN_POSITIVE, 1e-45, f32::MAX, f32::INFINITY, f32::NAN];
         let powers = (-37..38).map(|exponent| 10_f32.powi(exponent));
         for value in numbers.into_iter().chain(powers) {
             for near in [value, value.next_up(), value.next_down()] {

@@ -37,13 +37,9 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     };
     let taper = match &whisker.profile {
         Some(_) => "the radii are measured".to_owned(),
-        None => [
-            Parameter::BaseRadiusUm,
-            Parameter::TipRadiusUm,
-            Parameter::Taper,
-        ]
-        .into_iter()
-        .fold(radii(whisker), |text, parameter| why(parameter, text)),
+        None => [Parameter::BaseRadiusUm, Parameter::TipRadiusUm, Parameter::Taper]
+            .into_iter()
+            .fold(radii(whisker), |text, parameter| why(parameter, text)),
     };
     let smooth = scene.smooth_radii().map_or_else(String::new, |radii| {
         let (degree, rms) = (radii.degree, radii.rms_um);
@@ -73,9 +69,8 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     let friction = number(Parameter::Friction, "friction", pole.friction, 0.0);
     let clamped = || "no whisker.follicle: the base is clamped".to_owned();
     let stiffness = whisker.follicle_stiffness_nnm_per_rad;
-    let follicle = stiffness.map_or_else(clamped, |stiffness| {
-        format!("stiffness_nnm_per_rad {stiffness}")
-    });
+    let follicle =
+        stiffness.map_or_else(clamped, |stiffness| format!("stiffness_nnm_per_rad {stiffness}"));
     let follicle = why(Parameter::FollicleStiffness, follicle);
     let corners: Vec<SweptWhisker> = scene.corner_whiskers().collect();
     let any = |differs: fn(&SweptWhisker) -> bool| corners.iter().any(differs);
@@ -88,12 +83,7 @@ pub fn effects(scene: &Scene, kernels: Effects) -> Vec<Effect> {
     }
     let turns = any(|swept| swept.whisker.follicle_stiffness_nnm_per_rad.is_some());
     let is_disc = any(|swept| swept.pole.radius_mm != 0.0);
-    let effect = |name, on, cost, why| Effect {
-        name,
-        on,
-        why,
-        cost,
-    };
+    let effect = |name, on, cost, why| Effect { name, on, why, cost };
     #[rustfmt::skip]
     let effects = vec![
         effect("taper", kernels.taper && !kernels.profile, Cost::Kernel, taper),

@@ -125,9 +125,7 @@ impl Plan {
         let distances = scene.grid.distance_mm.len();
         let cells = push_angles * distances;
         let whiskers = scene.whisker_count();
-        let panels_at_once = (CELLS_OF_PANELS / cells)
-            .clamp(1, MOST_PANELS)
-            .min(whiskers);
+        let panels_at_once = (CELLS_OF_PANELS / cells).clamp(1, MOST_PANELS).min(whiskers);
         let sides = Self::sides(scene);
         // Some are packed while the next ones are computed.
         let rows = whiskers * distances;
@@ -144,10 +142,7 @@ impl Plan {
                 needed: bytes.div_ceil(1 << 20),
             });
         }
-        let corners: Vec<Rod> = scene
-            .corner_whiskers()
-            .map(|swept| swept.rod(Side::Cb))
-            .collect();
+        let corners: Vec<Rod> = scene.corner_whiskers().map(|swept| swept.rod(Side::Cb)).collect();
         let rows_at_once = (CELLS_IN_FLIGHT / push_angles).clamp(1, ROWS_IN_FLIGHT);
         let of_rows = |rows: usize| (rows * sides.len()).div_ceil(rows_at_once);
         let calls = |group: usize| {
@@ -189,11 +184,7 @@ impl Plan {
                 needed: bytes.div_ceil(1 << 20),
             });
         }
-        Ok(Self {
-            bytes,
-            cells_at_once: plan.cells,
-            ..plan
-        })
+        Ok(Self { bytes, cells_at_once: plan.cells, ..plan })
     }
 
     /// Returns the whisker sides that the push angles of `scene` need, `[side]`.
@@ -209,12 +200,8 @@ impl Plan {
     #[must_use]
     pub fn expansions(&self, scene: &Scene) -> Option<ExpansionCount> {
         let pushes = &scene.grid.push_angle_deg;
-        let columns = |side: &Side| {
-            pushes
-                .iter()
-                .filter(|push| Side::of_push(**push) == *side)
-                .count()
-        };
+        let columns =
+            |side: &Side| pushes.iter().filter(|push| Side::of_push(**push) == *side).count();
         let most = self.sides.iter().map(columns).max().unwrap_or(0);
         let needs_states = self.channels.needs_states();
         let count = ExpansionCount::new(scene.grid.distance_mm.len(), most, needs_states);

@@ -69,11 +69,7 @@ impl<'a> NewtonProblem<'a> for CellProblem<'a> {
             }
         }
         let is_stuck = self.residual <= TOLERANCE && self.residual > 0.5 * before;
-        if is_stuck {
-            NewtonStep::Accept
-        } else {
-            NewtonStep::Shoot(at + step)
-        }
+        if is_stuck { NewtonStep::Accept } else { NewtonStep::Shoot(at + step) }
     }
 }
 
@@ -97,11 +93,8 @@ pub fn newton(
     let starts = open.iter().map(|(_, start)| *start);
     let iterates = BatchNewton::new(method, most + 1).solve(&mut problems, starts);
     for ((problem, iterate), (i, _)) in problems.iter().zip(iterates).zip(open) {
-        let state = ContactState {
-            point: iterate.point,
-            full: iterate.state,
-            residual: problem.residual,
-        };
+        let state =
+            ContactState { point: iterate.point, full: iterate.state, residual: problem.residual };
         cells[*i] = Refined {
             state,
             steps: iterate.steps,
@@ -124,10 +117,7 @@ struct ConeDeviation {
 }
 
 impl ConeDeviation {
-    const CONE: Self = Self {
-        softness: 1.0,
-        left: 1.0,
-    };
+    const CONE: Self = Self { softness: 1.0, left: 1.0 };
 
     /// Computes the difference of `rod` with its contact at `tau`, which is the arclength `s`.
     fn new(rod: &Rod, tau: f64, s: f64) -> Self {
@@ -137,10 +127,7 @@ impl ConeDeviation {
         }
         let softness = rod.softness(tau).max(1.0);
         let at_contact = rod.radius(tau).powi(4) / rod.stiffness(s);
-        Self {
-            softness,
-            left: MARGIN * at_contact.max(softness * softness),
-        }
+        Self { softness, left: MARGIN * at_contact.max(softness * softness) }
     }
 }
 

@@ -41,9 +41,7 @@ fn detachment(grid: &Grid, margin_deg: &ChannelValues, row: usize, side: f64) ->
         let on_side = (*angle < 0.0) == (side < 0.0);
         (on_side && margin.is_finite()).then_some((margin, angle + side * margin))
     });
-    cells
-        .min_by(|(one, _), (other, _)| one.total_cmp(other))
-        .map(|(_, angle)| angle)
+    cells.min_by(|(one, _), (other, _)| one.total_cmp(other)).map(|(_, angle)| angle)
 }
 
 /// The part of a segment between the push angles `low` and `high`.

@@ -47,12 +47,7 @@ pub fn courses(title: &str, whisk: &Whisk) -> Chart {
     }
     let times = whisk.samples.iter().map(|sample| sample.time_s);
     share_times(&mut plots, times);
-    Chart {
-        plots,
-        title: title.to_owned(),
-        columns: 1,
-        ..Chart::default()
-    }
+    Chart { plots, title: title.to_owned(), columns: 1, ..Chart::default() }
 }
 
 /// Value of a frame with its standard deviation.
@@ -87,21 +82,14 @@ pub fn forces(title: &str, forces: &[FrameForce]) -> Chart {
     };
     let mut plots = vec![
         plot("force_un", |force| [force.force_un, force.force_sd_un]),
-        plot("base_moment_nnm", |force| {
-            [force.base_moment_nnm, force.base_moment_sd_nnm]
-        }),
+        plot("base_moment_nnm", |force| [force.base_moment_nnm, force.base_moment_sd_nnm]),
     ];
     // The first plot has the legend.
     for band in plots.iter_mut().skip(1).flat_map(|plot| &mut plot.bands) {
         band.name = None;
     }
     share_times(&mut plots, forces.iter().map(|force| force.time_s));
-    Chart {
-        plots,
-        title: title.to_owned(),
-        columns: 1,
-        ..Chart::default()
-    }
+    Chart { plots, title: title.to_owned(), columns: 1, ..Chart::default() }
 }
 
 /// Gives plots above each other one axis of times, below the last one.
@@ -134,11 +122,7 @@ fn plot(whisk: &Whisk, curve: &Curve) -> Plot {
         x_label: TIME.to_owned(),
         y_label: axis_title(curve.name),
         lines: vec![Line::new(points, Ink::Black, Stroke::Solid)],
-        dots: whisk
-            .events
-            .iter()
-            .filter_map(|event| dot(event, curve))
-            .collect(),
+        dots: whisk.events.iter().filter_map(|event| dot(event, curve)).collect(),
         ..Plot::default()
     }
 }
@@ -153,10 +137,5 @@ fn dot(event: &WhiskEvent, curve: &Curve) -> Option<Dot> {
         WhiskEventKind::Snap => (Ink::Series(2), false, "snap"),
         WhiskEventKind::Undecided => (Ink::Series(1), true, "undecided from here"),
     };
-    Some(Dot {
-        at: [event.time_s, (curve.event)(event)?],
-        ink,
-        open,
-        name: Some(name.to_owned()),
-    })
+    Some(Dot { at: [event.time_s, (curve.event)(event)?], ink, open, name: Some(name.to_owned()) })
 }

@@ -29,15 +29,9 @@ pub const DISTANCE: &str = "distance at first touch (mm)";
 pub fn regions(is_straight: bool) -> [Region; 2] {
     let names = match is_straight {
         true => [["\u{2212}"; 2], ["+"; 2]],
-        false => [
-            ["concave forward (CF)", "CF"],
-            ["concave backward (CB)", "CB"],
-        ],
+        false => [["concave forward (CF)", "CF"], ["concave backward (CB)", "CB"]],
     };
-    names.map(|[name, short]| Region {
-        name: name.to_owned(),
-        short: short.to_owned(),
-    })
+    names.map(|[name, short]| Region { name: name.to_owned(), short: short.to_owned() })
 }
 
 /// Returns the short name of a side.
@@ -73,10 +67,7 @@ pub fn channel(name: &str) -> String {
             "1" => "deg".to_owned(),
             unit => format!("deg per {unit}"),
         };
-        let (title, _) = parameter
-            .title()
-            .split_once(" (")
-            .unwrap_or((parameter.title(), ""));
+        let (title, _) = parameter.title().split_once(" (").unwrap_or((parameter.title(), ""));
         return format!("d(push angle at detachment) / d({title}) ({unit})");
     }
     column_label(name).unwrap_or(name).to_owned()
@@ -121,7 +112,5 @@ pub fn end_title(name: &str) -> String {
 /// Returns true if a channel is a load or an energy: these span decades, as they vanish at first touch.
 #[must_use]
 pub fn is_load(name: &str) -> bool {
-    ["_un", "_nnm", "_nj"]
-        .iter()
-        .any(|unit| name.ends_with(unit))
+    ["_un", "_nnm", "_nj"].iter().any(|unit| name.ends_with(unit))
 }

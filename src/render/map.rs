@@ -82,10 +82,9 @@ fn panel_axis(axis: &SweepAxis) -> PanelAxis {
     let label = labels::variable(&axis.variable);
     match axis.variable {
         SweepVariable::Parameter(_) => PanelAxis::of_values(label, &axis.values),
-        SweepVariable::Whisker(_) => PanelAxis {
-            label,
-            texts: axis.coordinates().map(|name| name.to_string()).collect(),
-        },
+        SweepVariable::Whisker(_) => {
+            PanelAxis { label, texts: axis.coordinates().map(|name| name.to_string()).collect() }
+        }
     }
 }
 
@@ -228,9 +227,7 @@ fn scaled(
         range: options.range,
         whole,
     };
-    let scale = ColourScale::new(&summary, scale).map_err(|cause| RenderError::Scale {
-        channel: channel.to_owned(),
-        cause,
-    })?;
+    let scale = ColourScale::new(&summary, scale)
+        .map_err(|cause| RenderError::Scale { channel: channel.to_owned(), cause })?;
     Ok(Shading::Quantities(scale))
 }

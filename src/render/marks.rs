@@ -14,11 +14,7 @@ pub const YIELDING: &str = "beyond the yield strain";
 /// Returns true if the states in `channel` include some whose contact does not slide toward the tip.
 fn has_marks(map: &MapSlice, channel: &str) -> Result<bool, RenderError> {
     let is_marked = STATE_CHANNELS.contains(&channel) && map.channels().contains(&"status");
-    Ok(is_marked
-        && map
-            .codes("status")?
-            .into_iter()
-            .any(|code| status(code).is_some()))
+    Ok(is_marked && map.codes("status")?.into_iter().any(|code| status(code).is_some()))
 }
 
 /// Mark of a cell.
@@ -41,10 +37,7 @@ pub struct MapMarks {
 impl MapMarks {
     /// Finds the marks that occur in a picture of `channel`.
     pub fn new(map: &MapSlice, channel: &str) -> Result<Self, RenderError> {
-        let mut marks = Self {
-            has_marks: has_marks(map, channel)?,
-            yield_strains: Vec::new(),
-        };
+        let mut marks = Self { has_marks: has_marks(map, channel)?, yield_strains: Vec::new() };
         if !map.channels().contains(&Channel::PeakStrain.name()) {
             return Ok(marks);
         }

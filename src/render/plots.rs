@@ -50,14 +50,7 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
     let mut plot = empty(title, x.label, y.label);
     let place = |row: &Detachment| Some([(x.value)(row)?, (y.value)(row)?]);
     let mut has_dashes = false;
-    for DrawnCurve {
-        rows,
-        reach_mm,
-        stroke,
-        name,
-        ink: of_whisker,
-    } in all
-    {
+    for DrawnCurve { rows, reach_mm, stroke, name, ink: of_whisker } in all {
         for side in rows.chunk_by(|a, b| a.side == b.side && a.distance_mm < b.distance_mm) {
             let kinds = side.chunk_by(|a, b| a.kind == b.kind);
             let parts = kinds.filter_map(|part| {
@@ -112,10 +105,7 @@ pub fn yielding_ends<'a>(
         let place = (x.value)(end).zip((y.value)(end));
         points.push(place.filter(|_| yields).map_or(BREAK, <[f64; 2]>::from));
     }
-    let has_points = points
-        .iter()
-        .flatten()
-        .any(|coordinate| coordinate.is_finite());
+    let has_points = points.iter().flatten().any(|coordinate| coordinate.is_finite());
     has_points.then(|| Line::new(points, Ink::Grey, Stroke::Dashed).named(YIELDING))
 }
 
@@ -236,27 +226,21 @@ pub fn designs(variable: Variable, target: &DesignTarget, design: &Design) -> Pl
     let mut plot = empty("", &varied, &label);
     let kinds = [DetachmentKind::SlipOff, DetachmentKind::PullOff];
     let ranges = kinds.into_iter().filter_map(|kind| design.reached(kind));
-    let reached = ranges.fold([target.value; 2], |[low, high], [least, most]| {
-        [low.min(least), high.max(most)]
-    });
+    let reached = ranges
+        .fold([target.value; 2], |[low, high], [least, most]| [low.min(least), high.max(most)]);
     plot.logarithmic = [design.range, reached].map(is_wide);
     let wanted = design.range.map(|end| [end, target.value]).to_vec();
     let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
     let value = digits(target.value);
-    plot.lines
-        .push(wanted.named(format!("{value} {size}").trim_end()));
+    plot.lines.push(wanted.named(format!("{value} {size}").trim_end()));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {
             let place = |end: &DesignEnd| Some([end.value, end.reached?]);
             let points = piece.iter().filter_map(place).collect();
-            plot.lines
-                .push(Line::new(points, ink, Stroke::Solid).named(name));
+            plot.lines.push(Line::new(points, ink, Stroke::Solid).named(name));
         }
     }
-    let ink = goal
-        .kind()
-        .and_then(look)
-        .map_or(Ink::Black, |(ink, _)| ink);
+    let ink = goal.kind().and_then(look).map_or(Ink::Black, |(ink, _)| ink);
     plot.dots.extend(design.values.iter().map(|value| Dot {
         at: [*value, target.value],
         ink,

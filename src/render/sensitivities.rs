@@ -15,10 +15,7 @@ pub fn sensitivities(effects: &[VariableEffect]) -> Plot {
     let mut variables: Vec<(Variable, f64)> = Vec::new();
     for effect in effects {
         let size = effect.push_of_1_percent_deg.map_or(0.0, f64::abs);
-        match variables
-            .iter_mut()
-            .find(|(variable, _)| *variable == effect.variable)
-        {
+        match variables.iter_mut().find(|(variable, _)| *variable == effect.variable) {
             Some((_, most)) => *most = size.max(*most),
             None => variables.push((effect.variable, size)),
         }
@@ -27,9 +24,7 @@ pub fn sensitivities(effects: &[VariableEffect]) -> Plot {
     variables.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     let bar = |effect: &VariableEffect| {
         let (size, place) = (effect.push_of_1_percent_deg?, variables.iter());
-        let row = place
-            .clone()
-            .position(|(variable, _)| *variable == effect.variable)? as f64;
+        let row = place.clone().position(|(variable, _)| *variable == effect.variable)? as f64;
         let (shade, row) = match effect.side {
             Side::Cb => (Shade::Dark, row + HALF),
             Side::Cf => (Shade::Light, row - HALF),
@@ -43,10 +38,7 @@ pub fn sensitivities(effects: &[VariableEffect]) -> Plot {
     };
     Plot {
         x_label: labels::PUSH_CHANGE.to_owned(),
-        y_names: variables
-            .iter()
-            .map(|(variable, _)| variable.name())
-            .collect(),
+        y_names: variables.iter().map(|(variable, _)| variable.name()).collect(),
         bands: effects.iter().filter_map(bar).collect(),
         ..Plot::default()
     }

@@ -16,15 +16,9 @@ type OfPair = fn(&SharedState) -> (usize, Option<f64>);
 
 /// Pairs of numbers with their names.
 const PAIRS: [(&str, OfPair); 3] = [
-    ("moment and axial force", |state| {
-        (state.moment_x_states, state.moment_x_condition)
-    }),
-    ("moment and transverse force", |state| {
-        (state.moment_y_states, state.moment_y_condition)
-    }),
-    ("axial and transverse force", |state| {
-        (state.force_states, state.force_condition)
-    }),
+    ("moment and axial force", |state| (state.moment_x_states, state.moment_x_condition)),
+    ("moment and transverse force", |state| (state.moment_y_states, state.moment_y_condition)),
+    ("axial and transverse force", |state| (state.force_states, state.force_condition)),
 ];
 
 /// Draws the condition of the states of a map on `grid` by each two numbers at the base: a panel for each two. Cells are hatched where several states
@@ -57,10 +51,7 @@ pub fn shared_states(
         PanelCells {
             values,
             hatched,
-            curves: map.singular[index]
-                .iter()
-                .map(|ends| ends.to_vec())
-                .collect(),
+            curves: map.singular[index].iter().map(|ends| ends.to_vec()).collect(),
         }
     };
     let mut summary = ValueSummary::default();
@@ -74,10 +65,8 @@ pub fn shared_states(
         range: Some(CONDITIONS),
         whole: false,
     };
-    let scale = ColourScale::new(&summary, options).map_err(|cause| RenderError::Scale {
-        channel: "condition".to_owned(),
-        cause,
-    })?;
+    let scale = ColourScale::new(&summary, options)
+        .map_err(|cause| RenderError::Scale { channel: "condition".to_owned(), cause })?;
     let several = "several states have the same two numbers";
     let heat_map = HeatMap {
         title: title.to_owned(),

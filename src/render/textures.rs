@@ -62,12 +62,8 @@ pub fn tip_lines(samples: &[TextureSample], x: fn(&TextureSample) -> f64) -> Vec
         points.chain([[f64::NAN; 2]])
     });
     vec![
-        Line::new(
-            samples.iter().map(place).collect(),
-            Ink::Grey,
-            Stroke::Solid,
-        )
-        .named("slipping or free"),
+        Line::new(samples.iter().map(place).collect(), Ink::Grey, Stroke::Solid)
+            .named("slipping or free"),
         Line::new(red.collect(), STUCK, Stroke::Solid).named("stuck"),
     ]
 }
@@ -76,9 +72,7 @@ pub fn tip_lines(samples: &[TextureSample], x: fn(&TextureSample) -> f64) -> Vec
 #[must_use]
 pub fn tip_histogram(texture: &Texture) -> Plot {
     let bins = texture.tip_histogram();
-    let steps = bins
-        .iter()
-        .map(|bin| ([bin.tip_from_mm, bin.tip_to_mm], bin.tip_time_s));
+    let steps = bins.iter().map(|bin| ([bin.tip_from_mm, bin.tip_to_mm], bin.tip_time_s));
     steps_plot(TIP, "time of the tip there (s)", steps)
 }
 
@@ -87,11 +81,7 @@ fn dwell_histogram(texture: &Texture) -> Plot {
     let stays = texture.stays();
     let dwells = stays.iter().filter_map(|stay| Some([stay.dwell_s?, 1.0]));
     let bins = histogram(&dwells.collect::<Vec<_>>(), Some(0.0), DWELL_BINS);
-    steps_plot(
-        "dwell time on an asperity (s)",
-        "number of stays",
-        bins.into_iter(),
-    )
+    steps_plot("dwell time on an asperity (s)", "number of stays", bins.into_iter())
 }
 
 /// Returns a histogram as a line of steps through `([from, to], height)`.

@@ -76,12 +76,7 @@ impl AxisValues {
     /// Creates a range of `count` values with equal differences, from `from` to `to`, in the axis' unit.
     #[must_use]
     pub const fn linear(from: f64, to: f64, count: usize) -> Self {
-        Self::Range {
-            from,
-            to: Some(to),
-            count,
-            scale: AxisScale::Linear,
-        }
+        Self::Range { from, to: Some(to), count, scale: AxisScale::Linear }
     }
 
     /// Returns the values of the axis `key`, in its unit, if they are within the limits, strictly increasing, and at least one,
@@ -96,29 +91,14 @@ impl AxisValues {
                 let must = format!("must have between 1 and {MOST_VALUES} values, has {count}");
                 Err(SceneFault::new(key, must))
             }
-            &Self::Range {
-                from,
-                to,
-                count,
-                scale,
-            } => {
-                let values = range(
-                    key,
-                    limits,
-                    [Some(from), to],
-                    count,
-                    scale == AxisScale::Log,
-                )?;
+            &Self::Range { from, to, count, scale } => {
+                let values = range(key, limits, [Some(from), to], count, scale == AxisScale::Log)?;
                 if values.is_sorted_by(|a, b| a < b) {
                     return Ok(values);
                 }
                 let ends = format!("{from} and {}", to.unwrap_or(from));
                 let must = format!("must be smaller: between {ends}, neighbours would coincide");
-                Err(SceneFault::of_value(
-                    format!("{key}.count"),
-                    count.to_string(),
-                    must,
-                ))
+                Err(SceneFault::of_value(format!("{key}.count"), count.to_string(), must))
             }
         }
     }
@@ -158,11 +138,7 @@ fn range(
     let Some(to) = ends[1] else {
         return match count {
             1 => Ok(vec![from]),
-            _ => refuse(
-                "count",
-                count.to_string(),
-                "must be 1 where `to` is left out".to_owned(),
-            ),
+            _ => refuse("count", count.to_string(), "must be 1 where `to` is left out".to_owned()),
         };
     };
     limits.check(&format!("{key}.to"), to)?;

@@ -44,11 +44,7 @@ impl FrameDeviations {
 
     /// Sets the standard deviation of this name. Returns false for another name.
     pub fn set(&mut self, name: &str, deviation: f64) -> bool {
-        let values = [
-            &mut self.curvature_per_mm,
-            &mut self.contact_mm,
-            &mut self.angle_deg,
-        ];
+        let values = [&mut self.curvature_per_mm, &mut self.contact_mm, &mut self.angle_deg];
         let named = Self::NAMES.into_iter().zip(values);
         let mut found = named.filter(|(known, _)| *known == name);
         found.next().is_some_and(|(_, value)| {
@@ -93,9 +89,8 @@ impl Numbers {
     /// Returns the radius at the tip, in micrometres, as given or from a taper; `None` if neither is given.
     pub fn tip_radius_um(&self) -> Option<f64> {
         let base = self.get(Parameter::BaseRadiusUm);
-        let tapered = base
-            .zip(self.get(Parameter::Taper))
-            .map(|(base, taper)| base * (1.0 - taper));
+        let tapered =
+            base.zip(self.get(Parameter::Taper)).map(|(base, taper)| base * (1.0 - taper));
         tapered.or(self.get(Parameter::TipRadiusUm))
     }
 }
@@ -262,10 +257,7 @@ impl SceneBuilder {
 
     /// Returns the name and the values of each axis as they are given: push angles, distances, and the sweep in order.
     pub fn axes(&self) -> impl Iterator<Item = (&'static str, &AxisValues)> {
-        let inside = [
-            ("push_angle_deg", &self.push_angle_deg),
-            ("distance_mm", &self.distance_mm),
-        ];
+        let inside = [("push_angle_deg", &self.push_angle_deg), ("distance_mm", &self.distance_mm)];
         let sweep = self.sweep.iter();
         let sweep = sweep.map(|(parameter, values)| (parameter.axis(), values));
         inside.into_iter().chain(sweep)

@@ -84,10 +84,7 @@ impl SceneBuilder {
         Ok(SceneData {
             title: self.title.clone(),
             uncertainty: deviations::checked(self)?,
-            surface: self
-                .surface
-                .map(|surface| surface.checked(&whisker))
-                .transpose()?,
+            surface: self.surface.map(|surface| surface.checked(&whisker)).transpose()?,
             whisker,
             pole,
             grid,
@@ -146,9 +143,7 @@ fn whisker(
     let modulus = Parameter::YoungsModulusGpa;
     let youngs_modulus_gpa = check(modulus, modulus.number_limits().remarks(unit))?;
     let (curvature, euler_spiral) = shape::shape(numbers, length_mm)?;
-    let traced = traced
-        .map(|traced| shape::traced(numbers, &traced.curvature))
-        .transpose()?;
+    let traced = traced.map(|traced| shape::traced(numbers, &traced.curvature)).transpose()?;
     let ratio = Parameter::ModulusTipToBase;
     let modulus_tip_to_base = check(ratio, ratio.number_limits())?;
     let own_taper = 1.0 - radii.tip_radius_um / radii.base_radius_um;
@@ -158,14 +153,8 @@ fn whisker(
     let mut end = ("twice as long", MOST_STRETCH);
     for other in [
         ("1 / taper, where the radius at the tip is 0", pointed),
-        (
-            "0.95 / (1 - tip_to_base), where the modulus at the tip is 0.05 of the base's",
-            softest,
-        ),
-        (
-            "19 / (tip_to_base - 1), where the modulus at the tip is 20 times the base's",
-            stiffest,
-        ),
+        ("0.95 / (1 - tip_to_base), where the modulus at the tip is 0.05 of the base's", softest),
+        ("19 / (tip_to_base - 1), where the modulus at the tip is 20 times the base's", stiffest),
     ] {
         if (1.0..end.1).contains(&other.1) {
             end = other;
@@ -174,9 +163,8 @@ fn whisker(
     let arc_stretch = check(Parameter::ArcStretch, NumberLimits::between(1.0, end))?;
     let stiffness = Parameter::FollicleStiffness;
     let given = numbers.get(stiffness);
-    let follicle_stiffness_nnm_per_rad = given
-        .map(|number| stiffness.number_limits().check(stiffness.key(), number))
-        .transpose()?;
+    let follicle_stiffness_nnm_per_rad =
+        given.map(|number| stiffness.number_limits().check(stiffness.key(), number)).transpose()?;
     Ok(Whisker {
         length_mm,
         base_radius_um: radii.base_radius_um,
@@ -205,11 +193,7 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
     let reach = NumberLimits::between(near, far).remarks(remark);
     let distance_mm = scene.distance_mm.checked("grid.distance_mm", &reach)?;
     let sweep = sweep::axes(scene, [shortest, longest])?;
-    let grid = Grid {
-        push_angle_deg,
-        distance_mm,
-        sweep,
-    };
+    let grid = Grid { push_angle_deg, distance_mm, sweep };
     check_size(&grid)?;
     Ok(grid)
 }
@@ -217,9 +201,7 @@ fn grid(scene: &SceneBuilder, [shortest, longest]: [f64; 2]) -> Result<Grid, Sce
 /// Checks the number of cells of a grid.
 fn check_size(grid: &Grid) -> Result<(), SceneFault> {
     let sweep = grid.sweep.iter().map(|axis| axis.values.len());
-    let mut counts = [grid.push_angle_deg.len(), grid.distance_mm.len()]
-        .into_iter()
-        .chain(sweep);
+    let mut counts = [grid.push_angle_deg.len(), grid.distance_mm.len()].into_iter().chain(sweep);
     let cells = counts.try_fold(1, |cells: u128, count| cells.checked_mul(count as u128));
     if cells.is_none_or(|cells| cells > MOST_CELLS) {
         let has = cells.map_or_else(String::new, |cells| format!(", has {cells}"));

@@ -75,19 +75,9 @@ impl SceneData {
         let row = place.row().and_then(|row| self.table.get(row));
         let (mut whisker, mut pole) = match row {
             None => (self.whisker.clone(), self.pole),
-            Some(TableWhisker {
-                found: Ok(whisker_and_pole),
-                ..
-            }) => whisker_and_pole.clone(),
-            Some(TableWhisker {
-                name,
-                found: Err(reason),
-            }) => {
-                return Err(RefusedWhisker {
-                    place,
-                    name: name.clone(),
-                    reason: reason.clone(),
-                });
+            Some(TableWhisker { found: Ok(whisker_and_pole), .. }) => whisker_and_pole.clone(),
+            Some(TableWhisker { name, found: Err(reason) }) => {
+                return Err(RefusedWhisker { place, name: name.clone(), reason: reason.clone() });
             }
         };
         let mut curvature = whisker.curvature.unwrap_or_default();
@@ -119,11 +109,7 @@ impl SceneData {
             whisker.tip_radius_um = whisker.base_radius_um * (1.0 - taper);
         }
         whisker.curvature = Some(curvature).filter(Curvature::is_given);
-        Ok(SweptWhisker {
-            place,
-            whisker,
-            pole,
-        })
+        Ok(SweptWhisker { place, whisker, pole })
     }
 
     /// Returns every whisker of the sweep; the first axis varies fastest. Without axes, it is the one whisker of the scene. Places of rows
@@ -184,8 +170,7 @@ impl SceneData {
     /// Returns true if any whisker of the sweep has friction with its pole.
     #[must_use]
     pub fn has_friction(&self) -> bool {
-        self.corner_whiskers()
-            .any(|swept| swept.pole.friction != 0.0)
+        self.corner_whiskers().any(|swept| swept.pole.friction != 0.0)
     }
 
     /// Returns true if the scene, or any row of its table of whiskers, has a yield strain.
@@ -199,8 +184,7 @@ impl SceneData {
     /// Returns true if all whiskers of the sweep are straight at rest.
     #[must_use]
     pub fn is_straight(&self) -> bool {
-        self.corner_whiskers()
-            .all(|swept| swept.whisker.sharpest_bend_per_mm() == 0.0)
+        self.corner_whiskers().all(|swept| swept.whisker.sharpest_bend_per_mm() == 0.0)
     }
 
     /// Returns true if the scene has an axis along which whiskers differ.

@@ -16,22 +16,14 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
     let Some(deviations) = &scene.uncertainty else {
         return Ok(None);
     };
-    let Deviations {
-        parameters,
-        profile_radius_um,
-        frames,
-    } = deviations;
+    let Deviations { parameters, profile_radius_um, frames } = deviations;
     if parameters.is_empty() && profile_radius_um.is_none() && *frames == FrameDeviations::default()
     {
         let must = format!("must have at least one of {}", names());
         return Err(SceneFault::new("uncertainty", must));
     }
     let is_measured = scene.measured.is_some();
-    let has_tip = || {
-        parameters
-            .iter()
-            .any(|(parameter, _)| *parameter == Parameter::TipRadiusUm)
-    };
+    let has_tip = || parameters.iter().any(|(parameter, _)| *parameter == Parameter::TipRadiusUm);
     let limits = NumberLimits::between(0.0, MOST);
     for &(parameter, deviation) in parameters {
         let key = format!("uncertainty.{}", parameter.name());

@@ -66,12 +66,7 @@ impl SceneError {
             }
             _ => None,
         };
-        Self::at(
-            origin,
-            text,
-            why.span(),
-            message + &hint.unwrap_or_default(),
-        )
+        Self::at(origin, text, why.span(), message + &hint.unwrap_or_default())
     }
 
     /// Creates an error about a refused value of a scene: `key = value: must ...`.
@@ -81,10 +76,7 @@ impl SceneError {
             Some(value) => format!("{key} = {value}: {must}"),
             None => format!("{key}: {must}"),
         };
-        Self {
-            fault: Some(Box::new(fault)),
-            ..Self::at(origin, text, None, message)
-        }
+        Self { fault: Some(Box::new(fault)), ..Self::at(origin, text, None, message) }
     }
 
     /// Returns the key of the refused value in a scene file, such as `whisker.length_mm`; `None` if the text is no scene.
@@ -120,11 +112,7 @@ impl SceneError {
     /// It begins with `error: `; colours are ANSI escapes, and control characters are escaped.
     #[must_use]
     pub fn render(&self, color: bool) -> String {
-        let renderer = if color {
-            Renderer::styled()
-        } else {
-            Renderer::plain()
-        };
+        let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let [origin, message] = [&self.origin, &self.message].map(|text| escaped(text));
         let Some(span) = &self.span else {
             let message = match origin.as_str() {
@@ -149,13 +137,7 @@ impl SceneError {
 /// The end of a message about an unknown field: the key among those expected that resembles it, if one does.
 fn suggestion(found: &str, expected: &str) -> String {
     // TOML quotes every key in backticks.
-    let keys = |text: &'_ str| {
-        text.split('`')
-            .skip(1)
-            .step_by(2)
-            .map(str::to_owned)
-            .collect()
-    };
+    let keys = |text: &'_ str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect();
     let (found, expected): (Vec<String>, Vec<String>) = (keys(found), keys(expected));
     let found = found.first().map_or("", String::as_str);
     did_you_mean(found, expected.iter().map(String::as_str))
@@ -210,19 +192,12 @@ pub(super) struct SceneFault {
 impl SceneFault {
     /// Creates a fault of a key whose value is missing, or too long for a sentence.
     pub fn new(key: impl Into<String>, must: impl Into<String>) -> Self {
-        Self {
-            key: key.into(),
-            value: None,
-            must: must.into(),
-        }
+        Self { key: key.into(), value: None, must: must.into() }
     }
 
     /// Creates a fault of a value that is not allowed.
     pub fn of_value(key: impl Into<String>, value: String, must: impl Into<String>) -> Self {
-        Self {
-            value: Some(value),
-            ..Self::new(key, must)
-        }
+        Self { value: Some(value), ..Self::new(key, must) }
     }
 }
 
@@ -234,11 +209,8 @@ mod tests {
     /// The keys are read from the text of serde.
     #[test]
     fn messages_of_serde_have_keys_in_backticks() {
-        let lists: [&'static [&str]; 3] = [
-            &["length_mm"],
-            &["length_mm", "title"],
-            &["title", "length_mm", "grid"],
-        ];
+        let lists: [&'static [&str]; 3] =
+            [&["length_mm"], &["length_mm", "title"], &["title", "length_mm", "grid"]];
         for known in lists {
             let why: Error = serde::de::Error::unknown_field("lenght_mm", known);
             let why = why.to_string();

@@ -231,10 +231,7 @@ impl Grid {
     #[must_use]
     pub fn place(&self, index: usize) -> SweepPlace {
         let axes = self.sweep.iter().zip(self.indices(index));
-        SweepPlace(
-            axes.map(|(axis, at)| (axis.variable.clone(), axis.values[at]))
-                .collect(),
-        )
+        SweepPlace(axes.map(|(axis, at)| (axis.variable.clone(), axis.values[at])).collect())
     }
 
     /// Returns the grid with only the ends of every sweep axis of a parameter, and all whiskers of a table.

@@ -17,20 +17,12 @@ pub(super) struct NumberLimits {
 impl NumberLimits {
     /// Creates limits of which both ends are allowed.
     pub fn between(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
-        Self {
-            min: min.into(),
-            max: max.into(),
-            is_open: false,
-            remarks: String::new(),
-        }
+        Self { min: min.into(), max: max.into(), is_open: false, remarks: String::new() }
     }
 
     /// Creates limits of which the lower end is allowed, and the upper one is not.
     pub fn below(min: impl Into<LimitEnd>, max: impl Into<LimitEnd>) -> Self {
-        Self {
-            is_open: true,
-            ..Self::between(min, max)
-        }
+        Self { is_open: true, ..Self::between(min, max) }
     }
 
     /// Adds remarks to the end of the message about a number outside the limits.
@@ -43,9 +35,7 @@ impl NumberLimits {
 
     /// Returns the `value` of `key` if it lies within the limits, otherwise a fault.
     pub fn check(&self, key: &str, value: f64) -> Result<f64, SceneFault> {
-        let Self {
-            min, max, remarks, ..
-        } = self;
+        let Self { min, max, remarks, .. } = self;
         let is_below = match self.is_open {
             false => value <= max.value,
             true => value < max.value,
@@ -84,19 +74,13 @@ pub(super) struct LimitEnd {
 
 impl From<f64> for LimitEnd {
     fn from(value: f64) -> Self {
-        Self {
-            value,
-            meaning: None,
-        }
+        Self { value, meaning: None }
     }
 }
 
 impl From<(&'static str, f64)> for LimitEnd {
     fn from((meaning, value): (&'static str, f64)) -> Self {
-        Self {
-            value,
-            meaning: Some(meaning),
-        }
+        Self { value, meaning: Some(meaning) }
     }
 }
 

@@ -14,10 +14,7 @@ mod limits;
 mod parameter;
 mod profile;
 mod rows;
-#[allow(
-    clippy::module_inception,
-    reason = "the type that this module is named after"
-)]
+#[allow(clippy::module_inception, reason = "the type that this module is named after")]
 mod scene;
 mod shape;
 mod smooth;

@@ -49,16 +49,9 @@ pub(super) fn radii(
     length_mm: f64,
 ) -> Result<Radii, SceneFault> {
     let keys = [Parameter::BaseRadiusUm, Parameter::TipRadiusUm].map(Parameter::key);
-    let ends = [
-        numbers.get(Parameter::BaseRadiusUm),
-        numbers.tip_radius_um(),
-    ];
+    let ends = [numbers.get(Parameter::BaseRadiusUm), numbers.tip_radius_um()];
     if let Some(given) = given {
-        if let Some((key, value)) = keys
-            .iter()
-            .zip(ends)
-            .find_map(|(key, end)| Some((key, end?)))
-        {
+        if let Some((key, value)) = keys.iter().zip(ends).find_map(|(key, end)| Some((key, end?))) {
             return Err(SceneFault::of_value(*key, digits(value), IS_MEASURED));
         }
         check_places(&given.rows, length_mm)?;
@@ -68,10 +61,7 @@ pub(super) fn radii(
         };
         check_radii(&smooth.rows).map_err(|fault| {
             let degree = smooth.degree;
-            let must = format!(
-                "{}, of the fit of degree {degree}: {}",
-                fault.key, fault.must
-            );
+            let must = format!("{}, of the fit of degree {degree}: {}", fault.key, fault.must);
             SceneFault::of_value(SMOOTH_KEY, "true".to_owned(), must)
         })?;
         return measured(numbers, &smooth.rows, length_mm);
@@ -86,17 +76,10 @@ pub(super) fn radii(
         let absent = || SceneFault::new(keys[end], "is left out, and there is no whisker.profile");
         ends[end].ok_or_else(absent)
     };
-    let base_radius_um = Parameter::BaseRadiusUm
-        .number_limits()
-        .check(keys[0], given(0)?)?;
+    let base_radius_um = Parameter::BaseRadiusUm.number_limits().check(keys[0], given(0)?)?;
     let tip_radius_um =
         NumberLimits::between(0.0, ("base_radius_um", base_radius_um)).check(keys[1], given(1)?)?;
-    Ok(Radii {
-        length_mm,
-        base_radius_um,
-        tip_radius_um,
-        profile: None,
-    })
+    Ok(Radii { length_mm, base_radius_um, tip_radius_um, profile: None })
 }
 
 /// Checks the arclengths of measured rows, and that the radii have a plausible unit.
@@ -125,10 +108,7 @@ fn check_places(rows: &[[f64; 2]], length_mm: f64) -> Result<(), SceneFault> {
                 digits(s - before)
             )
         } else if !(ROW_UM[0]..=ROW_UM[1]).contains(&radius) {
-            format!(
-                "the radius must be between 0.001 and 100000 um, is {}",
-                digits(radius)
-            )
+            format!("the radius must be between 0.001 and 100000 um, is {}", digits(radius))
         } else {
             before = s;
             continue;
@@ -227,10 +207,7 @@ fn extension_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let radii = rows.iter().map(|row| row[1]);
     let thinnest = radii.fold(f64::INFINITY, f64::min);
     let (why, tip) = match slope < 0.0 {
-        true => (
-            "where the radius is a thousandth of that at the base",
-            base / SHARPEST_TIP,
-        ),
+        true => ("where the radius is a thousandth of that at the base", base / SHARPEST_TIP),
         false => (
             "where the radius is that at the base, or four times the least",
             base.min(DEEPEST_WAIST * thinnest),
@@ -250,10 +227,7 @@ fn scale_limits(rows: &[[f64; 2]]) -> NumberLimits {
     let thickest = radii.clone().fold(0.0, f64::max);
     let thinnest = radii.fold(f64::INFINITY, f64::min);
     let [least, most] = Parameter::ProfileScale.limits();
-    NumberLimits::between(
-        least.max(ROW_UM[0] / thinnest).min(1.0),
-        most.min(ROW_UM[1] / thickest),
-    )
+    NumberLimits::between(least.max(ROW_UM[0] / thinnest).min(1.0), most.min(ROW_UM[1] / thickest))
 }
 
 /// The first row that is a waist deeper than [`DEEPEST_WAIST`], and its least radius.

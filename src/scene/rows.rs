@@ -23,10 +23,7 @@ impl SceneBuilder {
 
     /// Returns the builder of the whisker of a row, without the table.
     pub(super) fn of_row(&self, row: &WhiskerRow) -> Result<Self, SceneFault> {
-        let mut one = Self {
-            table: None,
-            ..self.clone()
-        };
+        let mut one = Self { table: None, ..self.clone() };
         for &(parameter, value) in &row.numbers {
             if !value.is_nan() {
                 one.numbers.set(parameter, value);
@@ -64,18 +61,13 @@ impl SceneBuilder {
                 first.get_or_insert(one);
                 Ok((whisker, pole))
             });
-            TableWhisker {
-                name: row.name.clone(),
-                found: found.map_err(|fault| reason(&fault)),
-            }
+            TableWhisker { name: row.name.clone(), found: found.map_err(|fault| reason(&fault)) }
         });
         let whiskers: Vec<TableWhisker> = whiskers.collect();
         match first {
             Some(first) => Ok((whiskers, first)),
             None => {
-                let reason = whiskers
-                    .iter()
-                    .find_map(|whisker| whisker.found.as_ref().err());
+                let reason = whiskers.iter().find_map(|whisker| whisker.found.as_ref().err());
                 let reason = reason.map_or("", |reason| reason);
                 let must = format!("must have a row with a whisker; row 1: {reason}");
                 Err(SceneFault::new(SweepVariable::TABLE, must))
@@ -88,10 +80,7 @@ impl SceneBuilder {
 fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
     let key = SweepVariable::TABLE;
     if !(1..=MOST_ROWS).contains(&rows.len()) {
-        let must = format!(
-            "must have between 1 and {MOST_ROWS} rows, has {}",
-            rows.len()
-        );
+        let must = format!("must have between 1 and {MOST_ROWS} rows, has {}", rows.len());
         return Err(SceneFault::new(key, must));
     }
     let mut places = HashMap::new();
@@ -121,12 +110,7 @@ fn check_names(rows: &[WhiskerRow]) -> Result<(), SceneFault> {
 
 /// Returns what is wrong with a row that gives a parameter twice.
 fn given_twice(row: &WhiskerRow) -> Option<String> {
-    let count = |parameter| {
-        row.numbers
-            .iter()
-            .filter(|(given, _)| *given == parameter)
-            .count()
-    };
+    let count = |parameter| row.numbers.iter().filter(|(given, _)| *given == parameter).count();
     if count(Parameter::Taper) + count(Parameter::TipRadiusUm) > 1 {
         return Some("must have either a taper or a tip_radius_um".to_owned());
     }

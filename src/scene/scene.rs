@@ -57,12 +57,7 @@ impl SceneBuilder {
         let builder = Arc::new(self.with_tip_of_taper().map_err(refused)?);
         let text = SceneText::of_numbers(Arc::clone(&builder));
         let data = builder.checked(text).map_err(refused)?;
-        Ok(Scene {
-            data,
-            builder,
-            csv_files: Vec::new(),
-            notes: Vec::new(),
-        })
+        Ok(Scene { data, builder, csv_files: Vec::new(), notes: Vec::new() })
     }
 }
 
@@ -70,11 +65,7 @@ impl Scene {
     /// Creates the builder of a scene with this title. Its outputs are called `scene` unless it names them.
     #[must_use]
     pub fn builder(title: impl Into<String>) -> SceneBuilder {
-        SceneBuilder {
-            title: title.into(),
-            stem: "scene".to_owned(),
-            ..SceneBuilder::default()
-        }
+        SceneBuilder { title: title.into(), stem: "scene".to_owned(), ..SceneBuilder::default() }
     }
 
     /// Returns the builder with the description from which this scene was built.
@@ -197,9 +188,7 @@ impl Scene {
 /// Keeps the middles of at most `most` equal parts, and at least one value.
 fn thin(values: &mut Vec<f64>, most: usize) {
     let (all, kept) = (values.len(), values.len().min(most.max(1)));
-    *values = (0..kept)
-        .map(|i| values[(2 * i + 1) * all / (2 * kept)])
-        .collect();
+    *values = (0..kept).map(|i| values[(2 * i + 1) * all / (2 * kept)]).collect();
 }
 
 impl SceneBuilder {

@@ -86,10 +86,7 @@ fn parabola(
             .remarks(["farther out, the chord from the base would not grow along the whisker"])
             .check(Parameter::VertexMm.key(), vertex_mm)?;
     }
-    Ok(Curvature {
-        parabola_per_mm,
-        vertex_mm: vertex_mm.unwrap_or(0.0),
-    })
+    Ok(Curvature { parabola_per_mm, vertex_mm: vertex_mm.unwrap_or(0.0) })
 }
 
 /// Returns the limits of a parabola's coefficient, in 1/mm.
@@ -164,11 +161,7 @@ pub(super) fn traced(
         Parameter::SpiralPerMm2,
     ] {
         if let Some(value) = numbers.get(parameter) {
-            return Err(SceneFault::of_value(
-                parameter.key(),
-                digits(value),
-                IS_TRACED,
-            ));
+            return Err(SceneFault::of_value(parameter.key(), digits(value), IS_TRACED));
         }
     }
     let sharpest = curvature.sharpest();

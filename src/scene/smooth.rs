@@ -67,20 +67,14 @@ fn orthonormal(places: &[f64], most: usize) -> Vec<Vec<f64>> {
     let mut basis: Vec<Vec<f64>> = Vec::new();
     for _ in 0..=most {
         let mut next: Vec<f64> = match basis.last() {
-            Some(last) => last
-                .iter()
-                .zip(places)
-                .map(|(value, x)| value * x)
-                .collect(),
+            Some(last) => last.iter().zip(places).map(|(value, x)| value * x).collect(),
             None => vec![1.0; places.len()],
         };
         // Twice is enough: the second pass removes what rounding leaves.
         for _ in 0..2 {
             for polynomial in &basis {
                 let part = dot(polynomial, &next);
-                next.iter_mut()
-                    .zip(polynomial)
-                    .for_each(|(x, value)| *x -= part * value);
+                next.iter_mut().zip(polynomial).for_each(|(x, value)| *x -= part * value);
             }
         }
         let length = dot(&next, &next).sqrt();
@@ -104,10 +98,8 @@ impl SmoothRadii {
             return Err(SceneFault::of_value(SMOOTH_KEY, "true".to_owned(), must));
         }
         let (from, to) = (rows[0][0], rows[rows.len() - 1][0]);
-        let places: Vec<f64> = rows
-            .iter()
-            .map(|[s, _]| 2.0 * (s - from) / (to - from) - 1.0)
-            .collect();
+        let places: Vec<f64> =
+            rows.iter().map(|[s, _]| 2.0 * (s - from) / (to - from) - 1.0).collect();
         let radii: Vec<f64> = rows.iter().map(|[_, radius]| *radius).collect();
         let mut basis = orthonormal(&places, MOST_DEGREE.min(rows.len() - 3));
         let mut residuals = radii.clone();
@@ -124,11 +116,8 @@ impl SmoothRadii {
                 *leverage += value * value;
             }
             let errors = residuals.iter().zip(&leverages);
-            squares.push(
-                errors
-                    .map(|(residual, part)| (residual / (1.0 - part)).powi(2))
-                    .collect(),
-            );
+            squares
+                .push(errors.map(|(residual, part)| (residual / (1.0 - part)).powi(2)).collect());
             left.push(residuals.clone());
         }
         let degree = smallest_degree(&squares, EXACT * radii[0] * radii[0]);
@@ -136,9 +125,7 @@ impl SmoothRadii {
         basis.truncate(degree + 1);
         let smooth = rows.iter().zip(&residuals);
         Ok(Self {
-            rows: smooth
-                .map(|([s, radius], residual)| [*s, radius - residual])
-                .collect(),
+            rows: smooth.map(|([s, radius], residual)| [*s, radius - residual]).collect(),
             degree,
             rms_um: (dot(&residuals, &residuals) / rows.len() as f64).sqrt(),
             basis,

@@ -108,8 +108,7 @@ impl SceneBuilder {
             };
             SceneFault::of_value(key, digits(value), must(column))
         };
-        self.column_of(parameter)
-            .map_or(Ok(()), |column| Err(fault(column)))
+        self.column_of(parameter).map_or(Ok(()), |column| Err(fault(column)))
     }
 
     /// Refuses a yield strain of the scene that a column of the table leaves without effect.

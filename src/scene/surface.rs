@@ -75,10 +75,7 @@ impl Surface {
         let touching = 0.5 * self.spacing_um * (1.0 - self.jitter);
         let sharpest = 1e3 / whisker.sharpest_bend_per_mm();
         let ends = [
-            (
-                "spacing_um * (1 - jitter) / 2, at which asperities touch",
-                touching,
-            ),
+            ("spacing_um * (1 - jitter) / 2, at which asperities touch", touching),
             ("the whisker's smallest radius of curvature in um", sharpest),
             ("the distance in um", 1e3 * self.distance_mm),
         ];

@@ -105,9 +105,8 @@ pub(super) fn check_corners(
     }
     let corners = ends.whisker_count();
     let places = (0..corners).map(|index| ends.place(index));
-    let refused: Vec<(SceneFault, SweepPlace)> = places
-        .filter_map(|place| Some((check(&place).err()?, place)))
-        .collect();
+    let refused: Vec<(SceneFault, SweepPlace)> =
+        places.filter_map(|place| Some((check(&place).err()?, place))).collect();
     let is_everywhere =
         refused.len() == corners && refused.iter().all(|(fault, _)| *fault == refused[0].0);
     let Some((mut fault, place)) = refused.into_iter().next() else {

@@ -45,10 +45,7 @@ impl WhiskerRow {
     /// Creates the row of the whisker `name`.
     #[must_use]
     pub fn new(name: impl Into<String>) -> Self {
-        Self {
-            name: name.into(),
-            ..Self::default()
-        }
+        Self { name: name.into(), ..Self::default() }
     }
 
     /// Sets a number of the whisker, in the unit of the parameter. A row with a missing number, NaN, has no whisker.

@@ -26,10 +26,8 @@ pub const LENGTH_MM: [f64; 2] = [1.0, 200.0];
 pub(super) const LENGTH_UNITS: [(&str, f64); 3] = [("um", 1e-3), ("cm", 10.0), ("m", 1e3)];
 
 /// Other units of radii and lengths that change their ratio, and by which factor.
-const SLENDER_UNITS: [(&str, f64); 2] = [
-    ("mm, or the length in um", 1e3),
-    ("nm, or the length in m", 1e-3),
-];
+const SLENDER_UNITS: [(&str, f64); 2] =
+    [("mm, or the length in um", 1e3), ("nm, or the length in m", 1e-3)];
 
 /// Other units of one number that change the force, and by which factor.
 const FORCE_UNITS: [(&str, f64); 6] = [
@@ -56,10 +54,7 @@ impl SceneNumber {
         let ends = values
             .map(|value| [value; 2])
             .reduce(|[least, most], [value, _]| [least.min(value), most.max(value)]);
-        Self {
-            key: key.into(),
-            ends: ends.unwrap_or([f64::NAN; 2]),
-        }
+        Self { key: key.into(), ends: ends.unwrap_or([f64::NAN; 2]) }
     }
 }
 
@@ -98,9 +93,7 @@ impl SceneData {
         let Self { whisker, .. } = self;
         let (length, base) = (whisker.length_mm, whisker.base_radius_um);
         let rows = whisker.profile.iter().flatten();
-        let rows: Vec<[f64; 2]> = rows
-            .map(|[s, radius]| [length * s, base * radius])
-            .collect();
+        let rows: Vec<[f64; 2]> = rows.map(|[s, radius]| [length * s, base * radius]).collect();
         let scatter = scatter(&rows).filter(|scatter| *scatter >= SCATTER * base)?;
         let fit = SmoothRadii::fit(&rows).ok()?;
         let step = length / (rows.len() - 1) as f64;
@@ -134,9 +127,7 @@ impl SceneData {
         let whisker = &self.whisker;
         if let Some(rows) = &whisker.profile {
             // A column has one unit, and a waist may be thin.
-            let thickest = rows
-                .iter()
-                .fold(0.0, |most: f64, [_, radius]| most.max(*radius));
+            let thickest = rows.iter().fold(0.0, |most: f64, [_, radius]| most.max(*radius));
             let thickest_um = thickest * whisker.base_radius_um;
             return vec![SceneNumber::new("whisker.profile.rows", [thickest_um])];
         }
@@ -150,14 +141,10 @@ impl SceneData {
     fn modulus(&self) -> Option<String> {
         let gpa = self.whisker.youngs_modulus_gpa;
         let unit = unexpected(gpa, MODULUS_GPA, &MODULUS_UNITS)?;
-        let hint = unit
-            .map(|unit| format!("; is it in {unit}?"))
-            .unwrap_or_default();
+        let hint = unit.map(|unit| format!("; is it in {unit}?")).unwrap_or_default();
         let key = Parameter::YoungsModulusGpa.key();
         let [gpa, least, most] = [gpa, MODULUS_GPA[0], MODULUS_GPA[1]].map(digits);
-        Some(format!(
-            "{key} = {gpa} GPa: expected {least} to {most} GPa{hint}"
-        ))
+        Some(format!("{key} = {gpa} GPa: expected {least} to {most} GPa{hint}"))
     }
 
     /// The force of the first whisker at an end of the axes whose force is not as expected.
@@ -194,9 +181,7 @@ fn thickness(radius: &SceneNumber, length: &SceneNumber) -> Option<String> {
     extremes.into_iter().find_map(|(um, mm)| {
         let ratio = um * 1e-3 / mm;
         let other = unexpected(ratio, SLENDER, &SLENDER_UNITS)?;
-        let hint = other
-            .map(|other| format!("; is it in {other}?"))
-            .unwrap_or_default();
+        let hint = other.map(|other| format!("; is it in {other}?")).unwrap_or_default();
         let [um, mm, least, most] = [um, mm, SLENDER[0], SLENDER[1]].map(digits);
         Some(format!(
             "{} = {um} um: expected {least} to {most} of {} = {mm} mm, is {ratio:.1e}{hint}",
@@ -232,8 +217,6 @@ fn other_units(
     [least, most]: [f64; 2],
     units: &[(&'static str, f64)],
 ) -> impl Iterator<Item = &'static str> {
-    let fitting = units
-        .iter()
-        .filter(move |(_, size)| (least..=most).contains(&(value * size)));
+    let fitting = units.iter().filter(move |(_, size)| (least..=most).contains(&(value * size)));
     fitting.map(|(unit, _)| *unit)
 }

@@ -124,9 +124,7 @@ impl Whisker {
     /// Returns the largest curvature of the whisker at rest, in radians per millimetre.
     #[must_use]
     pub fn sharpest_bend_per_mm(&self) -> f64 {
-        let parabola = self
-            .curvature
-            .map_or(0.0, |parabola| 2.0 * parabola.parabola_per_mm);
+        let parabola = self.curvature.map_or(0.0, |parabola| 2.0 * parabola.parabola_per_mm);
         let spiral = self.euler_spiral.map_or(0.0, |spiral| {
             let at_tip = spiral.per_mm + spiral.per_mm2 * self.length_mm;
             spiral.per_mm.abs().max(at_tip.abs())
@@ -178,9 +176,6 @@ impl Pole {
     /// Creates a pole without friction; its radius is in millimetres.
     #[must_use]
     pub const fn smooth(radius_mm: f64) -> Self {
-        Self {
-            radius_mm,
-            friction: 0.0,
-        }
+        Self { radius_mm, friction: 0.0 }
     }
 }

@@ -116,13 +116,7 @@ impl<'a> Differentiated<'a> {
             let distance = distance_mm / length;
             let by_distance = (by.distance_mm - by.length_mm * distance) / length;
             let (moved, touch) = at.moved(equations, variable, &self.rest, [distance, by_distance]);
-            Ok(Derivatives::new(
-                &at,
-                &moved,
-                (&self.rest, units, self.side),
-                by,
-                touch.y,
-            ))
+            Ok(Derivatives::new(&at, &moved, (&self.rest, units, self.side), by, touch.y))
         };
         self.by.iter().map(derivatives).collect()
     }

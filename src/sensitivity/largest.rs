@@ -51,12 +51,7 @@ pub(super) fn largest_along(
     let (moment, by) = match peak.before_end_deg {
         None => end().map_or_else(
             || none(NoDerivative::NoDetachment),
-            |detachment| {
-                (
-                    detachment.end.base_moment_nnm.unwrap_or_default(),
-                    detachment.by,
-                )
-            },
+            |detachment| (detachment.end.base_moment_nnm.unwrap_or_default(), detachment.by),
         ),
         Some(push_deg) => {
             let state = branch.state(push_deg.to_radians())?;
@@ -72,8 +67,5 @@ pub(super) fn largest_along(
         PushLoad::Strain => Err(NoDerivative::Strain),
     };
     let by = by.into_iter().map(|by| by.and_then(quantity));
-    Ok(LargestLoad {
-        peak,
-        by: by.collect(),
-    })
+    Ok(LargestLoad { peak, by: by.collect() })
 }

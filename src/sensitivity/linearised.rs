@@ -123,14 +123,7 @@ impl<'a> Linearised<'a> {
         variables.extend(axes.axes.iter().map(TrajectoryVariable::Rod));
         let condition = InitialCondition { rod, tau, load };
         let (full, by) = differentiate(resolution, &condition, &variables);
-        Self {
-            rod,
-            tau,
-            load,
-            full,
-            axes,
-            by,
-        }
+        Self { rod, tau, load, full, axes, by }
     }
 
     /// Derivative of `det J` along a derivative of the state.
@@ -173,11 +166,7 @@ impl<'a> Linearised<'a> {
         }
         // A sine of NaN is not large.
         let is_regular = sine(self.gradients(equations)) >= SINGULAR;
-        if is_regular {
-            Ok(())
-        } else {
-            Err(NoDerivative::Singular)
-        }
+        if is_regular { Ok(()) } else { Err(NoDerivative::Singular) }
     }
 
     /// Returns the derivative of the state by the variable with this index, and the derivative of `(ln D, phi)` at first touch. The variable changes
@@ -191,9 +180,8 @@ impl<'a> Linearised<'a> {
     ) -> (Moved, DVec2) {
         let none = VariationDerivative::default();
         let parts = self.axes.parts[variable].iter();
-        let fixed = parts.fold(none, |sum, (axis, coefficient)| {
-            sum.plus(*coefficient, &self.by[2 + axis])
-        });
+        let fixed =
+            parts.fold(none, |sum, (axis, coefficient)| sum.plus(*coefficient, &self.by[2 + axis]));
         let touch = rest.touch_derivative(distance, by_distance, &by.rod);
         let other = match equations {
             Equations::Push => touch.y + by.push - fixed.ln_pole.y,
@@ -205,11 +193,7 @@ impl<'a> Linearised<'a> {
         let tau = (first * b.y - second * a.y) / a.perp_dot(b);
         let load = (second * a.x - first * b.x) / a.perp_dot(b);
         let total = fixed.plus(tau, &self.by[0]).plus(load, &self.by[1]);
-        let moved = Moved {
-            tau,
-            state: total.state,
-            phi: total.ln_pole.y,
-        };
+        let moved = Moved { tau, state: total.state, phi: total.ln_pole.y };
         (moved, touch)
     }
 }

@@ -98,12 +98,7 @@ pub fn detachments(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<DetachmentDerivatives> {
-    let pushed = PushedWhisker {
-        whisker,
-        pole,
-        side,
-        distances_mm,
-    };
+    let pushed = PushedWhisker { whisker, pole, side, distances_mm };
     detachments_of(Resolution::FINE, &[pushed], EndDetail::Snaps, variables).concat()
 }
 
@@ -151,12 +146,7 @@ pub fn detachments_of(
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
     let differentiated = pushed.iter().map(|pushed| {
-        let PushedWhisker {
-            whisker,
-            pole,
-            side,
-            ..
-        } = *pushed;
+        let PushedWhisker { whisker, pole, side, .. } = *pushed;
         Differentiated::new(resolution, whisker, pole, side, variables)
     });
     let differentiated: Vec<Differentiated> = differentiated.collect();
@@ -185,11 +175,7 @@ pub(crate) fn of_rows(
         let parameters = parameters.iter().copied();
         parameters.zip(by.into_iter().map(push)).collect()
     };
-    crossings(sheet)
-        .into_iter()
-        .zip(distances_mm)
-        .map(of_row)
-        .collect()
+    crossings(sheet).into_iter().zip(distances_mm).map(of_row).collect()
 }
 
 /// Computes `count` points of the branch of `whisker` at `pole` as [`Branch::points`] does, with their derivatives by each of `variables`:

@@ -109,10 +109,7 @@ impl Derivatives {
                 arclength(rod, at.tau),
                 rod.arclength_derivative(at.tau, moved.tau, by.rod.taper),
             ),
-            force_un: force(
-                size * normal.x,
-                by_size * normal.x - size * normal.y * by_tilt,
-            ),
+            force_un: force(size * normal.x, by_size * normal.x - size * normal.y * by_tilt),
             contact_force_un: force(size, by_size),
             base_force_x_un: force(base_force.x, by_base_force.x),
             base_force_y_un: force(base_force.y, by_base_force.y),

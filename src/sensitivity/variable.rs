@@ -78,13 +78,8 @@ impl Variable {
     /// the distance.
     #[must_use]
     pub fn of_detachments(scene: &Scene) -> Vec<Self> {
-        let given = Parameter::ALL
-            .into_iter()
-            .filter(|parameter| parameter.has_derivative(scene));
-        given
-            .map(Self::Parameter)
-            .chain([Self::DistanceMm])
-            .collect()
+        let given = Parameter::ALL.into_iter().filter(|parameter| parameter.has_derivative(scene));
+        given.map(Self::Parameter).chain([Self::DistanceMm]).collect()
     }
 }
 

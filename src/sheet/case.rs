@@ -24,10 +24,7 @@ impl SheetCase<'_> {
     /// Returns this case of a sheet at the fine resolution, or its own if that is finer.
     pub const fn finely(self) -> Self {
         let resolution = self.method.resolution.at_least_fine();
-        let method = Method {
-            resolution,
-            ..self.method
-        };
+        let method = Method { resolution, ..self.method };
         Self { method, ..self }
     }
 

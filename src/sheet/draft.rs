@@ -65,34 +65,19 @@ pub(super) struct SheetDraft {
 impl SheetDraft {
     /// Samples the sheet, and finds where its rows cross the edges.
     pub fn new(method: Method, request: SheetRequest) -> Self {
-        let SheetRequest {
-            rod,
-            side,
-            distances,
-            serves,
-        } = request;
+        let SheetRequest { rod, side, distances, serves } = request;
         let rest = Rest::new(&rod);
         let rows: Vec<Row> = distances.iter().map(|d| Row::new(&rest, *d)).collect();
-        let nearest = rows
-            .iter()
-            .min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
-        let case = SheetCase {
-            method,
-            rod: &rod,
-            side,
-        };
+        let nearest = rows.iter().min_by(|a, b| a.pole_distance.total_cmp(&b.pole_distance));
+        let case = SheetCase { method, rod: &rod, side };
         let sample = |nearest| SheetSamples::new(case, nearest, &rows, serves.errors());
         let samples = nearest.and_then(sample);
-        let is_certified = samples
-            .as_ref()
-            .is_some_and(|samples| samples.panels.is_some());
+        let is_certified = samples.as_ref().is_some_and(|samples| samples.panels.is_some());
         let crossings = match &samples {
             Some(samples) => crossings(case, &samples.edges, &rows),
             None => vec![Vec::new(); rows.len()],
         };
-        let fold_grows = samples
-            .as_ref()
-            .is_some_and(|samples| samples.edges.fold_grows);
+        let fold_grows = samples.as_ref().is_some_and(|samples| samples.edges.fold_grows);
         let is_open = |(row, crossings): (&Row, &[Crossing])| {
             let touches = row.is_reached();
             let is_pair = usize::from(touches) + crossings.len() == 2;

@@ -88,12 +88,8 @@ impl Sheet {
     }
 
     fn one(method: Method, rod: &Rod, side: Side, distances: &[f64], serves: SheetUse) -> Self {
-        let request = SheetRequest {
-            rod: rod.clone(),
-            side,
-            distances: distances.to_vec(),
-            serves,
-        };
+        let request =
+            SheetRequest { rod: rod.clone(), side, distances: distances.to_vec(), serves };
         let mut drafts = [SheetDraft::new(method, request)];
         follow(&mut drafts);
         let [draft] = drafts;
@@ -172,11 +168,7 @@ impl Sheet {
 
     /// Returns the whisker side of the sheet.
     const fn case(&self) -> SheetCase<'_> {
-        SheetCase {
-            method: self.method,
-            rod: &self.rod,
-            side: self.side,
-        }
+        SheetCase { method: self.method, rod: &self.rod, side: self.side }
     }
 
     /// Returns the end of a `row` on a certified sheet; `None` unless first touch is its only other end.
@@ -244,10 +236,8 @@ impl Sheet {
         for span in &self.continued[row] {
             span.write_guesses(pushes, &mut guesses);
         }
-        if let Some(panel) = self
-            .samples
-            .as_ref()
-            .and_then(|samples| samples.panels.as_ref()?.of(row))
+        if let Some(panel) =
+            self.samples.as_ref().and_then(|samples| samples.panels.as_ref()?.of(row))
         {
             for (begin, end) in pieces(self.touches(row), &self.crossings[row]) {
                 let [from, to] = [begin.map_or(0.0, |begin| begin.push), end.push];

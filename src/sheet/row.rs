@@ -26,12 +26,7 @@ impl Row {
     #[must_use]
     pub fn new(rest: &Rest, distance: f64) -> Self {
         let (contact, pole) = rest.touch_at_distance(distance);
-        Self {
-            pole_distance: pole.length(),
-            contact,
-            touch: pole.to_angle(),
-            end: rest.end(),
-        }
+        Self { pole_distance: pole.length(), contact, touch: pole.to_angle(), end: rest.end() }
     }
 
     /// Returns true if the resting whisker is long enough to touch the pole. The shape at rest decides, so the result is the same at
@@ -187,8 +182,6 @@ pub fn pieces(
         [end, others @ ..] if touches => (Some((None, end)), others),
         all => (None, all),
     };
-    let others = others
-        .chunks_exact(2)
-        .map(|ends| (Some(&ends[0]), &ends[1]));
+    let others = others.chunks_exact(2).map(|ends| (Some(&ends[0]), &ends[1]));
     from_touch.into_iter().chain(others)
 }

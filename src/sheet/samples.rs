@@ -37,11 +37,7 @@ impl SheetSamples {
             };
             let panels = |error| Panels::for_guesses(by, folds, rows, error);
             let found = || errors.iter().copied().map(panels).find(show_folds);
-            Self {
-                panels: edges.are_certified().then(found).flatten(),
-                contacts,
-                edges,
-            }
+            Self { panels: edges.are_certified().then(found).flatten(), contacts, edges }
         };
         let coarse = |folds| {
             let contacts = nodes(case, SPACING, folds)?;

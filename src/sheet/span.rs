@@ -41,9 +41,7 @@ impl RowSpan {
         let is_ordered = |pair: &[SpanNode]| pair[0].push < pair[1].push;
         let grows = |pair: &[SpanNode]| pair[0].w < pair[1].w;
         let is_monotone = nodes.windows(2).all(|pair| is_ordered(pair) && grows(pair))
-            || nodes
-                .windows(2)
-                .all(|pair| is_ordered(pair) && !grows(pair));
+            || nodes.windows(2).all(|pair| is_ordered(pair) && !grows(pair));
         (is_monotone && nodes.len() > 1).then_some(Self { sign, nodes })
     }
 
@@ -101,11 +99,7 @@ mod tests {
     fn span(count: u32, to: f64) -> RowSpan {
         let node = |i: u32| {
             let w = to * (f64::from(i) / f64::from(count)).powf(0.8);
-            SpanNode {
-                w,
-                push: (FRAC_PI_2 * w).sin(),
-                tau: 0.5 + 0.1 * w,
-            }
+            SpanNode { w, push: (FRAC_PI_2 * w).sin(), tau: 0.5 + 0.1 * w }
         };
         RowSpan::through(1.0, (0..=count).map(node).collect()).unwrap()
     }
@@ -135,11 +129,7 @@ mod tests {
     #[test]
     fn a_parameter_that_turns_back_has_no_span() {
         let nodes = |turns: [f64; 4]| {
-            let node = |(i, w): (usize, f64)| SpanNode {
-                w,
-                push: 0.1 * i as f64,
-                tau: 1.0,
-            };
+            let node = |(i, w): (usize, f64)| SpanNode { w, push: 0.1 * i as f64, tau: 1.0 };
             turns.into_iter().enumerate().map(node).collect()
         };
         let is_span = |turns: [f64; 4]| RowSpan::through(1.0, nodes(turns)).is_some();

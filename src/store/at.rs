@@ -26,9 +26,7 @@ impl FromStr for AxisValue {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let (axis, value) = text
-            .split_once('=')
-            .ok_or("must be AXIS=VALUE, such as taper=0.9")?;
+        let (axis, value) = text.split_once('=').ok_or("must be AXIS=VALUE, such as taper=0.9")?;
         let axis = axis.trim();
         let value = match axis {
             SweepVariable::WHISKER => Coordinate::Name(value.trim().to_owned()),
@@ -49,10 +47,7 @@ pub struct InvalidAxisValue {
 
 impl InvalidAxisValue {
     pub(super) fn new(at: &AxisValue, why: impl ToString) -> Self {
-        Self {
-            axis: at.axis.clone(),
-            why: why.to_string(),
-        }
+        Self { axis: at.axis.clone(), why: why.to_string() }
     }
 }
 
@@ -108,11 +103,7 @@ pub(super) struct NamedAxis<'a> {
 impl<'a> NamedAxis<'a> {
     /// Returns name and values of a sweep axis.
     pub fn of(axis: &'a SweepAxis) -> Self {
-        Self {
-            name: axis.variable.name(),
-            values: &axis.values,
-            names: axis.variable.names(),
-        }
+        Self { name: axis.variable.name(), values: &axis.values, names: axis.variable.names() }
     }
 }
 
@@ -147,11 +138,7 @@ pub(super) fn select(
         }
     };
     let axis = axis.ok_or_else(unknown)?;
-    let NamedAxis {
-        name,
-        values,
-        names,
-    } = &axes[axis];
+    let NamedAxis { name, values, names } = &axes[axis];
     let index = match &at.value {
         Coordinate::Name(wanted) => named(values, names, wanted)?,
         Coordinate::Number(wanted) => numbered(name, values, *wanted, exact)?,
@@ -167,9 +154,7 @@ fn named(values: &[f64], names: &[String], wanted: &str) -> Result<usize, String
     let row = names.iter().position(|name| name == wanted);
     let index = row.and_then(|row| values.iter().position(|value| *value == (row + 1) as f64));
     index.ok_or_else(|| {
-        let rows = values
-            .iter()
-            .filter_map(|value| names.get(*value as usize - 1));
+        let rows = values.iter().filter_map(|value| names.get(*value as usize - 1));
         let known: Vec<&str> = rows.map(String::as_str).collect();
         let hint = did_you_mean(wanted, known.iter().copied());
         let shown = known.iter().take(MOST_SHOWN).map(|name| shortened(name));
@@ -178,10 +163,7 @@ fn named(values: &[f64], names: &[String], wanted: &str) -> Result<usize, String
             0 => String::new(),
             more => format!(" and {more} more"),
         };
-        format!(
-            "there is no whisker {}; must be one of {shown}{rest}{hint}",
-            shortened(wanted)
-        )
+        format!("there is no whisker {}; must be one of {shown}{rest}{hint}", shortened(wanted))
     })
 }
 
@@ -194,9 +176,7 @@ fn numbered(name: &str, values: &[f64], wanted: f64, exact: bool) -> Result<usiz
     let value = values[index];
     if exact && value != wanted {
         let [wanted, value] = [wanted, value].map(|number| with_unit(name, number));
-        return Err(format!(
-            "{wanted} is no value of the axis; the nearest is {value}"
-        ));
+        return Err(format!("{wanted} is no value of the axis; the nearest is {value}"));
     }
     check_near(name, values, wanted)?;
     Ok(index)
@@ -265,17 +245,11 @@ mod tests {
         assert_eq!(check_near("taper", &[0.5, 0.9], 1.1), Ok(()));
         // A single value is selected by every number that rounds to its four digits.
         let is_near = |wanted| check_near("taper", &[0.1001], wanted).is_ok();
-        assert_eq!(
-            [0.10005, 0.10015, 0.1000, 0.1002].map(is_near),
-            [true, true, false, false]
-        );
+        assert_eq!([0.10005, 0.10015, 0.1000, 0.1002].map(is_near), [true, true, false, false]);
     }
 
     #[test]
     fn of_two_values_as_near_the_first_is_selected() {
-        assert_eq!(
-            [1.4, 1.5, 1.6].map(|wanted| nearest(&[1.0, 2.0], wanted)),
-            [0, 0, 1]
-        );
+        assert_eq!([1.4, 1.5, 1.6].map(|wanted| nearest(&[1.0, 2.0], wanted)), [0, 0, 1]);
     }
 }

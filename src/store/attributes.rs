@@ -50,10 +50,8 @@ const INSIDE: [[&str; 4]; 2] = [
 ];
 
 /// Direction and place of the first value of the axes from one panel to the next.
-const ATLAS: [[&str; 2]; 2] = [
-    ["panel x", "column 0 of the atlas (left)"],
-    ["panel y", "row 0 of the atlas (top)"],
-];
+const ATLAS: [[&str; 2]; 2] =
+    [["panel x", "column 0 of the atlas (left)"], ["panel y", "row 0 of the atlas (top)"]];
 
 /// Name of the attribute with the CRC-32C of all bytes before the offset tables, in 8 hexadecimal digits.
 pub(super) const CHECKSUM: &str = "checksum";
@@ -97,9 +95,7 @@ pub(super) fn encode(about: &MapDescription<'_>) -> ExrAttributes {
     ];
     let digits = digits(about).map(|digits| (DIGITS, json!(digits)));
     let encoded = attributes.into_iter().chain(digits);
-    encoded
-        .map(|(name, value)| attribute(name, &ascii_json(&value)))
-        .collect()
+    encoded.map(|(name, value)| attribute(name, &ascii_json(&value))).collect()
 }
 
 /// Encodes the attribute `counts`, padded with spaces to [`counts_width`].
@@ -123,11 +119,7 @@ pub(super) fn counts_width() -> usize {
             without_row: u64::MAX,
             on_cpu_instead: u64::MAX,
         },
-        audit: Audit {
-            cells: u64::MAX,
-            differing: u64::MAX,
-            turned_over: u64::MAX,
-        },
+        audit: Audit { cells: u64::MAX, differing: u64::MAX, turned_over: u64::MAX },
     };
     ascii_json(&json!(counts)).len()
 }
@@ -143,18 +135,12 @@ fn axes(grid: &Grid) -> Vec<AxisAttribute> {
         names: Vec::new(),
     };
     let [push_angle, distance] = INSIDE;
-    let inside = [
-        axis(push_angle, &grid.push_angle_deg),
-        axis(distance, &grid.distance_mm),
-    ];
+    let inside = [axis(push_angle, &grid.push_angle_deg), axis(distance, &grid.distance_mm)];
     let atlas = grid.atlas().into_iter().zip(ATLAS);
     let atlas = atlas.filter_map(|(sweep_axis, [direction, first])| {
         let SweepAxis { variable, values } = sweep_axis?;
         let about = [variable.name(), variable.unit(), direction, first];
-        Some(AxisAttribute {
-            names: variable.names().to_vec(),
-            ..axis(about, values)
-        })
+        Some(AxisAttribute { names: variable.names().to_vec(), ..axis(about, values) })
     });
     inside.into_iter().chain(atlas).collect()
 }
@@ -175,19 +161,10 @@ pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String>
         Ok::<_, String>(found.remove(place).values)
     };
     let [push_angle_deg, distance_mm] = INSIDE.map(|[name, ..]| take(name));
-    let mut grid = Grid {
-        push_angle_deg: push_angle_deg?,
-        distance_mm: distance_mm?,
-        sweep: Vec::new(),
-    };
+    let mut grid =
+        Grid { push_angle_deg: push_angle_deg?, distance_mm: distance_mm?, sweep: Vec::new() };
     found.sort_by(|one, next| one.direction.cmp(&next.direction));
-    for AxisAttribute {
-        name,
-        values,
-        names,
-        ..
-    } in found
-    {
+    for AxisAttribute { name, values, names, .. } in found {
         let are_rows = values
             .iter()
             .all(|value| (1.0..=names.len() as f64).contains(value) && value.fract() == 0.0);
@@ -210,10 +187,8 @@ pub(super) fn decode_axes(mut found: Vec<AxisAttribute>) -> Result<Grid, String>
 pub(super) fn sorted(value: &Value) -> Value {
     match value {
         Value::Object(names) => {
-            let names: BTreeMap<_, _> = names
-                .iter()
-                .map(|(name, value)| (name.clone(), sorted(value)))
-                .collect();
+            let names: BTreeMap<_, _> =
+                names.iter().map(|(name, value)| (name.clone(), sorted(value))).collect();
             names.into_iter().collect()
         }
         Value::Array(values) => values.iter().map(sorted).collect(),

@@ -19,10 +19,7 @@ pub(super) fn chunk(
 ) -> exr::error::Result<Vec<u8>> {
     let compressed_block = match layout.tile(panel) {
         Some(tile) => CompressedBlock::Tile(CompressedTileBlock {
-            coordinates: TileCoordinates {
-                tile_index: tile,
-                level_index: Vec2(0, 0),
-            },
+            coordinates: TileCoordinates { tile_index: tile, level_index: Vec2(0, 0) },
             compressed_pixels_le,
         }),
         None => CompressedBlock::ScanLine(CompressedScanLineBlock {
@@ -31,10 +28,7 @@ pub(super) fn chunk(
             compressed_pixels_le,
         }),
     };
-    let chunk = Chunk {
-        layer_index: part,
-        compressed_block,
-    };
+    let chunk = Chunk { layer_index: part, compressed_block };
     let mut bytes = Vec::new();
     chunk.write(&mut bytes, parts)?;
     Ok(bytes)
@@ -47,7 +41,5 @@ pub(super) fn samples<'a>(
     digits: Digits,
 ) -> Vec<SampleLine<'a>> {
     let channels = channels.iter();
-    channels
-        .map(|name| (panel.bytes(name), digits.mantissa_bits(name)))
-        .collect()
+    channels.map(|name| (panel.bytes(name), digits.mantissa_bits(name))).collect()
 }

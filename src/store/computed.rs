@@ -74,10 +74,7 @@ impl ComputedMap {
             scene,
             plan,
             tolerances,
-            solver: Mutex::new(MapSolver {
-                engine,
-                ..MapSolver::default()
-            }),
+            solver: Mutex::new(MapSolver { engine, ..MapSolver::default() }),
         }
     }
 
@@ -158,10 +155,7 @@ impl ComputedMap {
             let kept = solver.kept.get(whisker);
             kept.inspect(|samples| put(places, samples)).is_none()
         });
-        let plan = Plan {
-            parts: consecutive(missing.keys().copied()),
-            ..self.plan.clone()
-        };
+        let plan = Plan { parts: consecutive(missing.keys().copied()), ..self.plan.clone() };
         let mut computed = missing.into_iter();
         let (kept, order) = (&mut solver.kept, &mut solver.order);
         let unresolved = &mut solver.unresolved;
@@ -222,9 +216,6 @@ mod tests {
     #[test]
     fn numbers_are_joined() {
         assert_eq!(consecutive([].into_iter()), []);
-        assert_eq!(
-            consecutive([2, 3, 4, 7, 9, 10].into_iter()),
-            [2..5, 7..8, 9..11]
-        );
+        assert_eq!(consecutive([2, 3, 4, 7, 9, 10].into_iter()), [2..5, 7..8, 9..11]);
     }
 }

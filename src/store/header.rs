@@ -47,8 +47,7 @@ pub(super) fn read(path: &Path, file: &mut BufReader<File>) -> Result<MetaData, 
         }
         _ => return Err(StoreError::NotExr(path.to_owned())),
     }
-    file.rewind()
-        .map_err(StoreError::at(path, StoreError::Read))?;
+    file.rewind().map_err(StoreError::at(path, StoreError::Read))?;
     let damaged = |why: String| StoreError::Damaged(path.to_owned(), format!("header: {why}"));
     let meta =
         MetaData::read_from_buffered(&mut *file, true).map_err(|why| damaged(why.to_string()))?;
@@ -90,9 +89,7 @@ fn places_of_checksum(preamble: &[u8]) -> Vec<Range<usize>> {
     let size = (size as u32).to_le_bytes();
     let before = [CHECKSUM.as_bytes(), b"\0string\0", &size, b"\""].concat();
     let windows = preamble.windows(before.len() + NO_CHECKSUM.len());
-    let found = windows
-        .enumerate()
-        .filter(|(_, bytes)| bytes.starts_with(&before));
+    let found = windows.enumerate().filter(|(_, bytes)| bytes.starts_with(&before));
     let places = found.map(|(first, bytes)| first + before.len()..first + bytes.len());
     places.collect()
 }
@@ -130,19 +127,13 @@ pub(super) fn check_layout(
 pub(super) fn channels(meta: &MetaData) -> Channels {
     let lists = meta.headers.iter().map(|header| &header.channels.list);
     let found: Vec<_> = lists.flatten().map(|channel| &channel.name).collect();
-    Channels::those(|name| {
-        found
-            .iter()
-            .any(|channel| channel.bytes() == name.as_bytes())
-    })
+    Channels::those(|name| found.iter().any(|channel| channel.bytes() == name.as_bytes()))
 }
 
 /// Decodes an attribute of the first part of an EXR map.
 pub(super) fn parse<T: DeserializeOwned>(meta: &MetaData, name: &str) -> Result<T, String> {
     let attributes = meta.headers.first().map(|header| &header.own_attributes);
-    let mut attributes = attributes
-        .into_iter()
-        .flat_map(|attributes| &attributes.other);
+    let mut attributes = attributes.into_iter().flat_map(|attributes| &attributes.other);
     let text = attributes
         .find(|(found, _)| found.bytes() == name.as_bytes())
         .and_then(|(_, value)| str::from_utf8(value.to_text().ok()?.bytes()).ok())

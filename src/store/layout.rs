@@ -30,9 +30,7 @@ impl AtlasLayout {
     /// Returns the atlas layout of a sweep over at most two axes.
     #[must_use]
     pub fn of(grid: &Grid) -> Self {
-        let [columns, rows] = grid
-            .atlas()
-            .map(|axis| axis.map_or(1, |axis| axis.values.len()));
+        let [columns, rows] = grid.atlas().map(|axis| axis.map_or(1, |axis| axis.values.len()));
         Self {
             columns,
             rows,
@@ -114,9 +112,7 @@ impl AtlasLayout {
     ) -> impl Iterator<Item = SampleLine<'a>> + Clone {
         let line = self.push_angles * SAMPLE_BYTES;
         let first = self.first_row(block);
-        let all = channels
-            .first()
-            .map_or(0, |(samples, _)| samples.len() / line);
+        let all = channels.first().map_or(0, |(samples, _)| samples.len() / line);
         let rows = first..(first + self.block_height()).min(all);
         rows.flat_map(move |row| {
             let channels = channels.iter();

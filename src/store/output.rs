@@ -55,11 +55,7 @@ impl Output {
             replaced.map_or(Ok(()), |replaced| file.set_permissions(replaced))?;
             (file, Some((target, name)))
         };
-        Ok(Self {
-            path: path.to_owned(),
-            bytes: OutputBytes::File(file),
-            target,
-        })
+        Ok(Self { path: path.to_owned(), bytes: OutputBytes::File(file), target })
     }
 
     /// Returns the path with which the output was created.

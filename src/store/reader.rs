@@ -86,17 +86,13 @@ impl StoredMap {
     /// The file cannot be read, is not EXR, is not a map of this program, or is damaged.
     pub fn open(path: &Path) -> Result<Self, StoreError> {
         let file = open_regular(path).map_err(StoreError::at(path, StoreError::Read))?;
-        Self::of_file(
-            path,
-            file.ok_or_else(|| StoreError::NotAFile(path.to_owned()))?,
-        )
+        Self::of_file(path, file.ok_or_else(|| StoreError::NotAFile(path.to_owned()))?)
     }
 
     /// Reads the header of the EXR map that is open as `file`; messages call it `path`.
     pub(super) fn of_file(path: &Path, file: File) -> Result<Self, StoreError> {
         let mut file = BufReader::new(file);
-        file.rewind()
-            .map_err(StoreError::at(path, StoreError::Read))?;
+        file.rewind().map_err(StoreError::at(path, StoreError::Read))?;
         let meta = header::read(path, &mut file)?;
         let foreign = StoreError::at(path, StoreError::NotAMap);
         let axes = header::parse(&meta, "axes").map_err(&foreign)?;
@@ -145,16 +141,13 @@ impl StoredMap {
     /// The attribute is damaged.
     pub fn digits(&self) -> Result<Digits, StoreError> {
         let first = self.meta.headers.first();
-        let mut names = first
-            .into_iter()
-            .flat_map(|header| header.own_attributes.other.keys());
+        let mut names = first.into_iter().flat_map(|header| header.own_attributes.other.keys());
         if !names.any(|name| name.bytes() == DIGITS.as_bytes()) {
             return Ok(Digits::ALL);
         }
         let text: String = header::parse(&self.meta, DIGITS)
             .map_err(StoreError::at(&self.path, StoreError::NotAMap))?;
-        text.parse()
-            .map_err(StoreError::at(&self.path, StoreError::NotAMap))
+        text.parse().map_err(StoreError::at(&self.path, StoreError::NotAMap))
     }
 
     /// Returns the names of all channels of the map, part by part, `[channel]`.
@@ -197,11 +190,10 @@ impl StoredMap {
         let mut bytes = Vec::new();
         for panel in panels {
             for block in 0..self.layout.blocks_per_panel() {
-                self.read_block([part, panel, block], channel, &mut bytes)
-                    .map_err(|cause| {
-                        let place = format!("channel `{name}`, panel {panel}, block {block}");
-                        StoreError::Damaged(self.path.clone(), format!("{place}: {cause}"))
-                    })?;
+                self.read_block([part, panel, block], channel, &mut bytes).map_err(|cause| {
+                    let place = format!("channel `{name}`, panel {panel}, block {block}");
+                    StoreError::Damaged(self.path.clone(), format!("{place}: {cause}"))
+                })?;
             }
         }
         Ok(ChannelValues::of_bytes(name, &bytes))

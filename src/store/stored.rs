@@ -94,10 +94,7 @@ impl MapSource {
     /// The map or store has no scene.
     pub fn scene(&self) -> Result<Result<Scene, SceneError>, StoreError> {
         let text = self.attribute("scene")?;
-        Ok(Scene::parse(
-            text.as_str().unwrap_or_default(),
-            "the scene of the map",
-        ))
+        Ok(Scene::parse(text.as_str().unwrap_or_default(), "the scene of the map"))
     }
 
     /// Returns the digits to which the channels of the map are rounded.
@@ -209,11 +206,9 @@ mod tests {
 
     #[test]
     fn versions_are_compatible_up_to_the_first_number_that_is_not_0() {
-        for (version, shared) in [
-            ("0.4.1", &["0", "4"][..]),
-            ("1.2.3", &["1"]),
-            ("0.0.3", &["0", "0", "3"]),
-        ] {
+        for (version, shared) in
+            [("0.4.1", &["0", "4"][..]), ("1.2.3", &["1"]), ("0.0.3", &["0", "0", "3"])]
+        {
             assert_eq!(series(version), shared);
         }
     }

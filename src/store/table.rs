@@ -15,10 +15,7 @@ impl TableFile {
     /// Creates a CSV table that is written to `output`.
     #[must_use]
     pub fn new(output: Output) -> Self {
-        Self(csv::Writer::from_writer(FiniteCells {
-            output,
-            begun: Vec::new(),
-        }))
+        Self(csv::Writer::from_writer(FiniteCells { output, begun: Vec::new() }))
     }
 
     /// Appends `rows` to the CSV table; the names of the fields of the first one are the header.
@@ -26,8 +23,7 @@ impl TableFile {
     /// # Errors
     /// When the output takes no more.
     pub fn rows<R: Serialize>(&mut self, rows: impl IntoIterator<Item = R>) -> io::Result<()> {
-        rows.into_iter()
-            .try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
+        rows.into_iter().try_for_each(|row| self.0.serialize(row).map_err(unwrapped))
     }
 
     /// Returns the output of the CSV table.
@@ -86,10 +82,7 @@ fn finite(cells: &[u8]) -> Cow<'_, [u8]> {
     let each = cells.split_inclusive(ends_cell).map(|cell| {
         let (text, end) = cell.split_at(cell.len() - 1);
         let is_finite = !matches!(text, b"NaN" | b"inf" | b"-inf");
-        debug_assert!(
-            is_finite,
-            "a row must have `None` for a number that does not exist"
-        );
+        debug_assert!(is_finite, "a row must have `None` for a number that does not exist");
         if is_finite { cell } else { end }
     });
     Cow::Owned(each.collect::<Vec<_>>().concat())

@@ -27,13 +27,7 @@ pub struct CellCounts {
 impl CellCounts {
     /// Adds the cells of `panel`, which has this index in the sweep. A code without a name is an error.
     pub(super) fn add(&mut self, index: usize, panel: &Panel) -> Result<(), StoreError> {
-        let unknown = |channel| {
-            move |code| StoreError::UnknownCode {
-                index,
-                channel,
-                code,
-            }
-        };
+        let unknown = |channel| move |code| StoreError::UnknownCode { index, channel, code };
         add(&mut self.regimes, regimes(), &panel.regime).map_err(unknown("regime"))?;
         add(&mut self.statuses, statuses(), &panel.status).map_err(unknown("status"))?;
         let cells = panel.residual.iter().zip(&panel.regime);
@@ -50,16 +44,12 @@ impl CellCounts {
 
 /// Returns the names of the regimes by code.
 pub(super) fn regimes() -> BTreeMap<u32, &'static str> {
-    Regime::ALL
-        .map(|regime| (regime.code(), regime.name()))
-        .into()
+    Regime::ALL.map(|regime| (regime.code(), regime.name())).into()
 }
 
 /// Returns the names of the statuses by code.
 pub(super) fn statuses() -> BTreeMap<u32, &'static str> {
-    Status::ALL
-        .map(|status| (status.code(), status.name()))
-        .into()
+    Status::ALL.map(|status| (status.code(), status.name())).into()
 }
 
 /// Adds to `cells`, by name, the number of cells with each of the `codes`. A code without a name is an error.

@@ -101,10 +101,7 @@ impl TemporaryFiles {
         let make = |builder: &mut Builder| builder.make_in(folder, |path| options.open(path));
         let (file, listed) = self.make(make, |file| file.as_file().try_clone())?;
         let (file, path) = file.into_parts();
-        let name = TemporaryName {
-            path,
-            _listed: listed,
-        };
+        let name = TemporaryName { path, _listed: listed };
         Ok((file, name))
     }
 
@@ -130,11 +127,7 @@ impl TemporaryFiles {
             }
             list.push(path.clone());
             let files = self.clone();
-            let listed = ListedPath {
-                path,
-                files,
-                _lock: lock,
-            };
+            let listed = ListedPath { path, files, _lock: lock };
             return Ok((made, listed));
         }
     }
@@ -240,10 +233,7 @@ pub(super) fn host_of(name: &str) -> Option<&str> {
 /// Returns the name of this host.
 fn host() -> String {
     #[cfg(unix)]
-    let host = rustix::system::uname()
-        .nodename()
-        .to_string_lossy()
-        .into_owned();
+    let host = rustix::system::uname().nodename().to_string_lossy().into_owned();
     #[cfg(not(unix))]
     let host = std::env::var("COMPUTERNAME").unwrap_or_default();
     let is_plain = |c: &char| c.is_ascii_alphanumeric() || "-_.".contains(*c);

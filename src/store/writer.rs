@@ -46,19 +46,13 @@ impl MapWriter {
         let path = output.path().to_owned();
         let grid = &about.scene.grid;
         if grid.sweep.len() > 2 {
-            return Err(StoreError::TooManyAxes {
-                path,
-                axes: grid.sweep_names(),
-            });
+            return Err(StoreError::TooManyAxes { path, axes: grid.sweep_names() });
         }
         let layout = AtlasLayout::of(grid);
         let mut attributes = attributes::encode(about);
         attributes.extend([attribute("counts", &" ".repeat(attributes::counts_width()))]);
         let headers = layout.headers(about.channels, &attributes);
-        if headers
-            .iter()
-            .any(|header| header.chunk_count > i32::MAX as usize)
-        {
+        if headers.iter().any(|header| header.chunk_count > i32::MAX as usize) {
             let why = exr::error::Error::Invalid("it has more than 2^31 blocks".into());
             return Err(StoreError::Encode(path, why));
         }
@@ -97,10 +91,7 @@ impl MapWriter {
     pub fn write_panels(&mut self, panels: &[Panel]) -> Result<(), StoreError> {
         let (first, all) = (self.written, self.layout.panels());
         if first + panels.len() > all {
-            return Err(StoreError::NoSuchPanel {
-                index: all,
-                panels: all,
-            });
+            return Err(StoreError::NoSuchPanel { index: all, panels: all });
         }
         for (index, panel) in (first..).zip(panels) {
             self.check_sizes(index, panel)?;
@@ -228,12 +219,7 @@ impl MapWriter {
         for channel in self.channels.names() {
             let cells = panel.bytes(channel).len() / SAMPLE_BYTES;
             if cells != expected {
-                return Err(StoreError::PanelSize {
-                    index,
-                    channel,
-                    cells,
-                    expected,
-                });
+                return Err(StoreError::PanelSize { index, channel, cells, expected });
             }
         }
         Ok(())

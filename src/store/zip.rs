@@ -33,9 +33,7 @@ pub(super) fn pack<'a>(lines: impl Iterator<Item = SampleLine<'a>> + Clone) -> V
 /// The sample as it is stored.
 fn stored(sample: [u8; 4], kept_bits: Option<u32>) -> u32 {
     let sample = u32::from_le_bytes(sample);
-    kept_bits.map_or(sample, |bits| {
-        rounded(f32::from_bits(sample), bits).to_bits()
-    })
+    kept_bits.map_or(sample, |bits| rounded(f32::from_bits(sample), bits).to_bits())
 }
 
 /// The bytes at even places, then those at odd ones; every line has as many of both.
@@ -113,10 +111,7 @@ mod tests {
     #[test]
     fn noise_is_stored_as_it_is() {
         let lines = lines(50, noise);
-        assert_eq!(
-            pack(lines.iter().map(|line| (line.as_slice(), None))),
-            lines.concat()
-        );
+        assert_eq!(pack(lines.iter().map(|line| (line.as_slice(), None))), lines.concat());
     }
 
     /// Readers take a block as long as its samples for one that is not compressed.

@@ -65,16 +65,9 @@ impl Asperities {
                 }
             });
             let is_reached = cb.distance_mm.or(cf.distance_mm).is_some();
-            is_reached.then_some(Asperity {
-                number,
-                x_mm,
-                cb,
-                cf,
-            })
+            is_reached.then_some(Asperity { number, x_mm, cb, cf })
         });
-        let mut asperities = Self {
-            reached: reached.collect(),
-        };
+        let mut asperities = Self { reached: reached.collect() };
         asperities.check_gaps()?;
         let states = BothSides {
             cb: asperities.solve(Side::Cb, whisker, &pole)?,
@@ -112,10 +105,8 @@ impl Asperities {
                 touches.push((asperity.number, touch));
             }
         }
-        let mut distances: Vec<f64> = touches
-            .iter()
-            .filter_map(|(_, touch)| touch.distance_mm)
-            .collect();
+        let mut distances: Vec<f64> =
+            touches.iter().filter_map(|(_, touch)| touch.distance_mm).collect();
         distances.sort_by(f64::total_cmp);
         distances.dedup();
         if distances.is_empty() {

@@ -27,12 +27,7 @@ pub fn events(
         let lost = energy(i).zip(after).map(|(before, after)| before - after);
         TextureEvent {
             lost_nj: lost.filter(|_| passage.event.is_detachment()),
-            ..TextureEvent::new(
-                passage.event,
-                [*time_s, passage.angle],
-                passage.side,
-                held[i],
-            )
+            ..TextureEvent::new(passage.event, [*time_s, passage.angle], passage.side, held[i])
         }
     });
     let end = crossed.map(|crossing| {

@@ -142,10 +142,7 @@ pub fn texture_until(
     surface.check(whisker)?;
     let point = CurvaturePoint::of(whisker, curvature_at_mm)?;
     let angles = course.angles_deg();
-    if let Some(index) = angles
-        .iter()
-        .position(|angle| !(-90.0..=90.0).contains(angle))
-    {
+    if let Some(index) = angles.iter().position(|angle| !(-90.0..=90.0).contains(angle)) {
         let angle_deg = angles[index];
         return Err(TextureError::Angle { index, angle_deg });
     }
@@ -153,14 +150,10 @@ pub fn texture_until(
     let (asperities, states) = Asperities::new(whisker, surface, &tips)?;
     let begin = asperities.begin(angles[0].to_radians())?;
     let (phases, passages) = asperities.follow(begin, course);
-    let place = Placed {
-        tips,
-        asperities: &asperities,
-    };
+    let place = Placed { tips, asperities: &asperities };
     let times = course.times_s().iter().zip(angles);
-    let moments: Vec<[f64; 2]> = times
-        .map(|(time_s, angle_deg)| [*time_s, angle_deg.to_radians()])
-        .collect();
+    let moments: Vec<[f64; 2]> =
+        times.map(|(time_s, angle_deg)| [*time_s, angle_deg.to_radians()]).collect();
     let contacts = phases.iter().zip(&moments).map(|(phase, [_, angle])| {
         let Phase::Contact { side, obstacle } = *phase else {
             return None;
@@ -171,10 +164,8 @@ pub fn texture_until(
     let contacts: Vec<Contact> = contacts.collect();
     let held = place.held(&states, &contacts, &moments, point, cancel)?;
 
-    let changes: Vec<[f64; 2]> = passages
-        .iter()
-        .map(|(time_s, passage)| [*time_s, passage.angle])
-        .collect();
+    let changes: Vec<[f64; 2]> =
+        passages.iter().map(|(time_s, passage)| [*time_s, passage.angle]).collect();
     let contacts: Vec<Contact> = passages
         .iter()
         .map(|(_, passage)| place.contact(passage.side, passage.obstacle, passage.push))
@@ -184,15 +175,7 @@ pub fn texture_until(
     let samples = held.iter().zip(&moments);
     let crossed = SurfaceCrossing::first(samples.chain(held_then.iter().zip(&changes)));
     Ok(Texture {
-        samples: sample::samples(
-            course,
-            &phases,
-            &passages,
-            &held,
-            &place.tips,
-            crossed,
-            point,
-        ),
+        samples: sample::samples(course, &phases, &passages, &held, &place.tips, crossed, point),
         events: event::events(&passages, &held_then, crossed),
         reached: asperities.len(),
     })
@@ -211,12 +194,8 @@ struct Placed<'a> {
 impl Placed<'_> {
     /// Returns the contact with an obstacle after a push in radians, as a magnitude; `None` for a push that is NaN.
     fn contact(&self, side: Side, obstacle: i32, push: f64) -> Contact {
-        let contact = || PushedContact {
-            side,
-            row: self.asperities.row(side, obstacle),
-            push,
-            phase: None,
-        };
+        let contact =
+            || PushedContact { side, row: self.asperities.row(side, obstacle), push, phase: None };
         (!push.is_nan()).then(|| (contact(), obstacle))
     }
 
@@ -234,9 +213,7 @@ impl Placed<'_> {
             if cancel.load(Ordering::Relaxed) {
                 return Err(TextureError::Cancelled);
             }
-            let pushed = chunk
-                .iter()
-                .map(|contact| contact.map(|(pushed, _)| pushed));
+            let pushed = chunk.iter().map(|contact| contact.map(|(pushed, _)| pushed));
             found.extend(states.at(&pushed.collect::<Vec<_>>(), friction::states));
         }
         let held = contacts.par_iter().zip(found).zip(moments);

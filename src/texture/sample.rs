@@ -45,11 +45,7 @@ impl SurfaceCrossing {
     ) -> Option<Self> {
         let crossing = |(held, [time_s, angle]): (&Option<Held>, &[f64; 2])| {
             let held = held.filter(|held| held.state.is_some_and(|(_, tip)| tip.crosses))?;
-            Some(Self {
-                time_s: *time_s,
-                angle: *angle,
-                held,
-            })
+            Some(Self { time_s: *time_s, angle: *angle, held })
         };
         let crossings = states.filter_map(crossing);
         crossings.min_by(|one, other| one.time_s.total_cmp(&other.time_s))

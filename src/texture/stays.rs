@@ -75,13 +75,9 @@ impl Texture {
             let weight = 0.5 * (time(i + 1) - time(i.saturating_sub(1)));
             Some([samples[i].tip_x_mm?, weight])
         });
-        let bins = histogram(&places.collect::<Vec<_>>(), None, TIP_BINS)
-            .into_iter()
-            .map(|(ends, tip_time_s)| TipBin {
-                tip_from_mm: ends[0],
-                tip_to_mm: ends[1],
-                tip_time_s,
-            });
+        let bins = histogram(&places.collect::<Vec<_>>(), None, TIP_BINS).into_iter().map(
+            |(ends, tip_time_s)| TipBin { tip_from_mm: ends[0], tip_to_mm: ends[1], tip_time_s },
+        );
         bins.collect()
     }
 }
@@ -106,8 +102,5 @@ pub fn histogram(values: &[[f64; 2]], least: Option<f64>, bins: usize) -> Vec<([
         sums[bin.min(bins - 1)] += weight;
     }
     let ends = |bin: usize| [bin, bin + 1].map(|end| width.mul_add(end as f64, least));
-    sums.iter()
-        .enumerate()
-        .map(|(bin, sum)| (ends(bin), *sum))
-        .collect()
+    sums.iter().enumerate().map(|(bin, sum)| (ends(bin), *sum)).collect()
 }

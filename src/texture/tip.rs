@@ -83,11 +83,7 @@ impl TipFrame {
         let free = |s: f64| {
             let (point, tangent) = self.rest.at_arclength(s);
             let from_contact = turn.rotate(point - at) * self.length_mm;
-            FreePoint {
-                s_mm: s * self.length_mm,
-                from_contact,
-                slope: turn.rotate(tangent).y,
-            }
+            FreePoint { s_mm: s * self.length_mm, from_contact, slope: turn.rotate(tangent).y }
         };
         let (begin, tip) = (free(s), free(end));
         let at_mm = |s_mm: f64| free(s_mm / self.length_mm);
@@ -121,11 +117,6 @@ impl TipFrame {
     }
 
     fn place(&self, tip: DVec2, contact_mm: Option<DVec2>, crosses: bool) -> TipPlace {
-        TipPlace {
-            x_mm: tip.x,
-            height_mm: tip.y - self.distance_mm,
-            contact_mm,
-            crosses,
-        }
+        TipPlace { x_mm: tip.x, height_mm: tip.y - self.distance_mm, contact_mm, crosses }
     }
 }

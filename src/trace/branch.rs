@@ -102,12 +102,12 @@ impl Branch {
         if stable {
             return self.0.state(signed_push);
         }
-        let unstable = self.path.unstable().ok_or_else(|| NoState::NoFold {
-            at_deg: self.stable_end_deg(),
-        })?;
-        let not_there = |ends: [f64; 2]| NoState::NotUnstable {
-            ends_deg: ends.map(f64::to_degrees),
-        };
+        let unstable = self
+            .path
+            .unstable()
+            .ok_or_else(|| NoState::NoFold { at_deg: self.stable_end_deg() })?;
+        let not_there =
+            |ends: [f64; 2]| NoState::NotUnstable { ends_deg: ends.map(f64::to_degrees) };
         let node = self.node_at(unstable, signed_push, not_there)?;
         Ok(self.beyond_fold(&node))
     }
@@ -144,9 +144,7 @@ impl Branch {
             true => Err(NoState::Cancelled),
             false => Ok(()),
         };
-        let Path {
-            nodes, fold, end, ..
-        } = &self.path;
+        let Path { nodes, fold, end, .. } = &self.path;
         let lengths = self.path.lengths();
         let (targets, fold_at) = targets(&lengths, *fold, count.max(3));
         let mut between = Vec::with_capacity(targets.len());
@@ -205,9 +203,7 @@ impl Branch {
 
     /// Returns the push angle, in degrees, up to which the row has other stable states where the stable states from first touch end.
     fn snaps_deg(&self) -> Option<f64> {
-        let LevelCurve {
-            method, rod, side, ..
-        } = &self.path.level;
+        let LevelCurve { method, rod, side, .. } = &self.path.level;
         let distance = self.distance_mm / self.units.length_mm;
         snaps_deg(&Sheet::of_ends(*method, rod, *side, &[distance]), 0)
     }

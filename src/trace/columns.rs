@@ -116,34 +116,17 @@ mod tests {
     fn rows_have_the_values_of_their_state() {
         let reading = Reading::of([7.0, 8.0, 2.0, 3.0, 4.0, 9.0, 10.0, 11.0, 12.0]);
         let point = BranchPoint::default().with_state(Some(&reading));
-        let places = [
-            point.arc_length_mm,
-            point.contact_angle_deg,
-            point.push_chord_deg,
-        ];
+        let places = [point.arc_length_mm, point.contact_angle_deg, point.push_chord_deg];
         assert_eq!(places, [7.0, 8.0, 10.0]);
-        let loads = [
-            point.force_un,
-            point.base_moment_nnm,
-            point.energy_nj,
-            point.contact_force_un,
-        ];
+        let loads =
+            [point.force_un, point.base_moment_nnm, point.energy_nj, point.contact_force_un];
         assert_eq!(loads, [2.0, 9.0, 12.0, 5.0]);
         let end = Detachment::default().with_state(Some(&reading));
-        assert_eq!(
-            [end.base_force_x_un, end.base_force_y_un],
-            [Some(3.0), Some(4.0)]
-        );
+        assert_eq!([end.base_force_x_un, end.base_force_y_un], [Some(3.0), Some(4.0)]);
         let free = end.unloaded();
-        assert_eq!(
-            [free.force_un, free.contact_force_un, free.energy_nj],
-            [Some(0.0); 3]
-        );
+        assert_eq!([free.force_un, free.contact_force_un, free.energy_nj], [Some(0.0); 3]);
         assert_eq!(free.contact_distance_mm, Some(11.0));
-        assert_eq!(
-            Detachment::default().with_state(None),
-            Detachment::default()
-        );
+        assert_eq!(Detachment::default().with_state(None), Detachment::default());
     }
 
     /// Rows share the description of a field of [`Reading`], but for rows with a description of their own.
@@ -154,10 +137,7 @@ mod tests {
             found.map(|(_, about)| (*about).to_owned())
         };
         let energy = about(Detachment::COLUMNS, "energy_nj");
-        assert_eq!(
-            energy.as_deref(),
-            Some(" Bending energy of the whisker, in nJ.")
-        );
+        assert_eq!(energy.as_deref(), Some(" Bending energy of the whisker, in nJ."));
         assert_eq!(energy, about(BranchPoint::COLUMNS, "energy_nj"));
         let stable = about(BranchPoint::COLUMNS, "stable");
         assert!(

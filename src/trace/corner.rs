@@ -40,12 +40,7 @@ impl Corner {
     /// Returns the corner of a row of a table that has no whisker.
     #[must_use]
     pub const fn without_whisker(side: Side) -> Self {
-        Self {
-            side,
-            distance_mm: None,
-            push_angle_deg: None,
-            reason: Some(NoCorner::NoWhisker),
-        }
+        Self { side, distance_mm: None, push_angle_deg: None, reason: Some(NoCorner::NoWhisker) }
     }
 }
 
@@ -59,12 +54,7 @@ pub fn corner(whisker: &Whisker, pole: &Pole, side: Side) -> Corner {
         Ok((distance, push.ok_or(NoCorner::NotFound)?))
     });
     let (distance_mm, push_angle_deg) = found.ok().unzip();
-    Corner {
-        side,
-        distance_mm,
-        push_angle_deg,
-        reason: found.err(),
-    }
+    Corner { side, distance_mm, push_angle_deg, reason: found.err() }
 }
 
 /// Distance of the corner, in mm: at the fold with the contact at the tip if the ends next to it agree, else by multisection.
@@ -111,15 +101,10 @@ fn switch(
     let pulled = ends(&samples).iter().position(is_pulled);
     let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
-    let mut bracket = Bracket {
-        below: samples[before],
-        above: samples[pulled],
-    };
+    let mut bracket = Bracket { below: samples[before], above: samples[pulled] };
     bracket.multisect(CORNER_TOLERANCE * length, WIDTH, |distances| {
         let ends = ends(distances);
-        let slipped = ends
-            .iter()
-            .take_while(|end| end.kind == DetachmentKind::SlipOff);
+        let slipped = ends.iter().take_while(|end| end.kind == DetachmentKind::SlipOff);
         let slipped = slipped.count();
         match ends.get(slipped) {
             Some(end) if !is_pulled(end) => Err(NoCorner::NotFound),

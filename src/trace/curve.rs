@@ -94,12 +94,7 @@ pub fn curve_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    of_one(
-        resolution,
-        (whisker, pole, side),
-        distances_mm,
-        EndDetail::All,
-    )
+    of_one(resolution, (whisker, pole, side), distances_mm, EndDetail::All)
 }
 
 /// Computes the ends of the detachment curve of [`curve_at`] alone, without largest strains and snaps.
@@ -111,12 +106,7 @@ pub fn ends_at(
     side: Side,
     distances_mm: &[f64],
 ) -> Vec<Detachment> {
-    of_one(
-        resolution,
-        (whisker, pole, side),
-        distances_mm,
-        EndDetail::State,
-    )
+    of_one(resolution, (whisker, pole, side), distances_mm, EndDetail::State)
 }
 
 /// Detachments of one whisker, `[distance]`.
@@ -126,12 +116,7 @@ fn of_one(
     distances_mm: &[f64],
     detail: EndDetail,
 ) -> Vec<Detachment> {
-    let pushed = PushedWhisker {
-        whisker,
-        pole,
-        side,
-        distances_mm,
-    };
+    let pushed = PushedWhisker { whisker, pole, side, distances_mm };
     detachments(resolution, &[pushed], detail, |_, end, _| end).concat()
 }
 
@@ -194,12 +179,7 @@ pub(crate) fn detachments<T: Send>(
     let sheets = Sheet::several(method, requests.collect());
     let row_ends = RowEnd::of(method, &sheets, detail);
     let of_sheet = |(index, (sheet, row_ends)): (usize, (&Sheet, Vec<Result<RowEnd, _>>))| {
-        let PushedWhisker {
-            whisker,
-            side,
-            distances_mm,
-            ..
-        } = pushed[index];
+        let PushedWhisker { whisker, side, distances_mm, .. } = pushed[index];
         let units = whisker.units();
         let reader = Reader::new(units, &sheet.rod);
         let slidings = match detail {
@@ -328,9 +308,7 @@ fn slidings(sheet: &Sheet, ends: &[Result<RowEnd, DetachmentKind>]) -> Vec<Optio
         return slidings;
     }
     let rows = ends.iter().enumerate().filter_map(|(row, end)| {
-        let RowEnd {
-            crossing, state, ..
-        } = *end.as_ref().ok()?;
+        let RowEnd { crossing, state, .. } = *end.as_ref().ok()?;
         (crossing.push > TIE).then_some((row, crossing, state))
     });
     let rows: Vec<(usize, Crossing, FirstVariation)> = rows.collect();

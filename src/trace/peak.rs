@@ -46,10 +46,7 @@ impl StableBranch {
         let nodes = path.stable();
         let sizes = self.sizes(nodes, load);
         let Some(best) = best(&sizes) else {
-            return PushPeak {
-                size: f64::NAN,
-                before_end_deg: None,
-            };
+            return PushPeak { size: f64::NAN, before_end_deg: None };
         };
         let (last, mut found) = (sizes[sizes.len() - 1], (sizes[best], nodes[best]));
         let lengths = path.lengths();
@@ -75,10 +72,7 @@ impl StableBranch {
         // Next to the end, the push angle of a maximum is known to the root of the rounding errors.
         let (size, node) = found;
         let is_before = size > last * (1.0 + AT_END);
-        PushPeak {
-            size,
-            before_end_deg: is_before.then(|| node.signed_push.to_degrees()),
-        }
+        PushPeak { size, before_end_deg: is_before.then(|| node.signed_push.to_degrees()) }
     }
 
     /// Returns the largest size of `load` at the stable nodes of the continuation, some percent below the size of [`Self::peak`]; NaN if no state is known.
@@ -105,11 +99,7 @@ impl StableBranch {
         };
         let mut sizes = sizes.into_iter();
         let size = |state: &Result<_, _>| state.as_ref().ok().and_then(|_| sizes.next());
-        states
-            .iter()
-            .map(size)
-            .map(|size| size.unwrap_or(f64::NAN))
-            .collect()
+        states.iter().map(size).map(|size| size.unwrap_or(f64::NAN)).collect()
     }
 }
 

@@ -15,8 +15,7 @@ pub fn targets(lengths: &[f64], fold: Option<usize>, count: usize) -> (Vec<f64>,
     };
     let before = (fold / total * intervals as f64).round() as usize;
     let before = before.clamp(1, intervals - 1);
-    let targets = uniform(0.0, fold, before)
-        .chain(uniform(fold, total, intervals - before))
-        .chain([total]);
+    let targets =
+        uniform(0.0, fold, before).chain(uniform(fold, total, intervals - before)).chain([total]);
     (targets.collect(), Some(before))
 }

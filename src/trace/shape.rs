@@ -77,9 +77,7 @@ impl StableBranch {
         let length = units.length_mm;
         let mut angle = -found.signed_push;
         let points = places.iter().enumerate().map(|(i, place)| {
-            let RodPoint {
-                position, tangent, ..
-            } = *place;
+            let RodPoint { position, tangent, .. } = *place;
             let at = turn.rotate(position - base.position) * length;
             angle =
                 whiskmap_mechanics::numerics::nearest_turn(turn.rotate(tangent).to_angle(), angle);
@@ -111,9 +109,7 @@ impl StableBranch {
     #[must_use]
     pub fn at_rest(&self, count: usize) -> Vec<[f64; 2]> {
         let rest = Rest::new(&self.path.level.rod);
-        uniform(count)
-            .map(|s| (rest.at_arclength(s).0 * self.units.length_mm).to_array())
-            .collect()
+        uniform(count).map(|s| (rest.at_arclength(s).0 * self.units.length_mm).to_array()).collect()
     }
 }
 

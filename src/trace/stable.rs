@@ -98,10 +98,8 @@ impl StableBranch {
     /// Returns the largest bending strains of `states`, `[state]`.
     pub(super) fn peaks(&self, states: &[StateAtPush]) -> Vec<PeakStrain> {
         let rods: Vec<_> = states.iter().map(|state| self.rod(state.ratio)).collect();
-        let conditions = rods
-            .iter()
-            .zip(states)
-            .map(|(rod, state)| InitialCondition::new(rod, state.point));
+        let conditions =
+            rods.iter().zip(states).map(|(rod, state)| InitialCondition::new(rod, state.point));
         Batch::new(self.path.level.method).shoot(&conditions.collect::<Vec<_>>())
     }
 

@@ -47,12 +47,7 @@ impl StableBranch {
     #[must_use]
     pub fn read(&self, state: &StateAtPush) -> Reading {
         let reader = Reader::new(self.units, &self.rod(state.ratio));
-        reader.read(
-            state.point.x,
-            &state.full,
-            self.path.level.row.touch,
-            state.signed_push,
-        )
+        reader.read(state.point.x, &state.full, self.path.level.row.touch, state.signed_push)
     }
 
     /// Returns `state` as a point of the branch without a mark.
@@ -99,10 +94,7 @@ impl StableBranch {
             signed_push
         };
         let node = self.path.level.state_at_push(part, signed_push);
-        let node = node.map(|node| CurveNode {
-            signed_push,
-            ..node
-        });
+        let node = node.map(|node| CurveNode { signed_push, ..node });
         node.ok_or_else(|| match signed_push == inside {
             true => self.failed(),
             false => outside(ends),
@@ -127,15 +119,11 @@ impl StableBranch {
         if friction == 0.0 {
             return nodes.iter().map(|node| Ok(unmoved(node, None))).collect();
         }
-        let lost = |node: &CurveNode| NoState::NoCourse {
-            push_deg: node.signed_push.to_degrees(),
-        };
+        let lost = |node: &CurveNode| NoState::NoCourse { push_deg: node.signed_push.to_degrees() };
         let Some(history) = &self.history else {
             return nodes.iter().map(|node| Err(lost(node))).collect();
         };
-        let phases = nodes
-            .iter()
-            .map(|node| history.phase(sign * node.signed_push));
+        let phases = nodes.iter().map(|node| history.phase(sign * node.signed_push));
         let phases: Vec<ContactPhase> = phases.collect();
         // At first touch there is no load, and so no friction.
         let is_moved = |phase: &ContactPhase, node: &CurveNode| {

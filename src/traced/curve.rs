@@ -139,12 +139,7 @@ impl<'a> CurveTable<'a> {
                 *by -= at_base;
             }
         }
-        Self {
-            terms,
-            pose,
-            curvature: CurvaturePolynomial::new(pose.legendre),
-            knots,
-        }
+        Self { terms, pose, curvature: CurvaturePolynomial::new(pose.legendre), knots }
     }
 
     /// Index of the panel of a `place`, and the place in it from 0 to 1.
@@ -220,12 +215,7 @@ impl<'a> CurveTable<'a> {
     fn foot_at(&self, point: DVec2, place: f64) -> Foot {
         let normal = unit(self.pose.angle + self.curvature.angle(place)).perp();
         let foot_point = self.point(place);
-        Foot {
-            place,
-            distance: (point - foot_point).dot(normal),
-            normal,
-            point: foot_point,
-        }
+        Foot { place, distance: (point - foot_point).dot(normal), normal, point: foot_point }
     }
 
     /// Returns the coefficients `[degree]` of the part of the curve from its base to the place `end`, in radians, in units of the part's length.

@@ -66,11 +66,7 @@ pub struct TracedPoints<'a> {
 impl<'a> TracedPoints<'a> {
     /// Prepares fits to `points`, from base to tip, at least two. They end when `cancel` becomes true.
     pub fn new(points: &'a [DVec2], cancel: &'a AtomicBool) -> Self {
-        Self {
-            points,
-            terms: CurveTerms::new(),
-            cancel,
-        }
+        Self { points, terms: CurveTerms::new(), cancel }
     }
 
     /// Table of the curve with these `unknowns`, in units of `length`, from the first point.
@@ -79,11 +75,7 @@ impl<'a> TracedPoints<'a> {
         legendre[..unknowns.len() - 2].copy_from_slice(&unknowns[2..]);
         let (sin, cos) = libm::sincos(unknowns[0]);
         let base = -unknowns[1] * DVec2::new(-sin, cos);
-        let pose = CurvePose {
-            base,
-            angle: unknowns[0],
-            legendre,
-        };
+        let pose = CurvePose { base, angle: unknowns[0], legendre };
         CurveTable::new(&self.terms, pose)
     }
 
@@ -110,11 +102,7 @@ impl<'a> TracedPoints<'a> {
             let table = self.table(unknowns);
             let feet = self.feet(&table, length, some);
             let distances = feet.iter().map(|foot| foot.distance).collect();
-            FittedCurve {
-                table,
-                feet,
-                distances,
-            }
+            FittedCurve { table, feet, distances }
         };
         let jacobian = |unknowns: &[f64], curve: &FittedCurve| {
             if self.cancel.load(Ordering::Relaxed) {
@@ -145,9 +133,7 @@ impl<'a> TracedPoints<'a> {
     pub fn curves(&self, most: usize) -> Result<Vec<CurveFit>, &'static str> {
         let all: Vec<usize> = (0..self.points.len()).collect();
         let last = self.points.len() - 1;
-        let coarse: Vec<DVec2> = (0..=COARSE)
-            .map(|i| self.points[last * i / COARSE])
-            .collect();
+        let coarse: Vec<DVec2> = (0..=COARSE).map(|i| self.points[last * i / COARSE]).collect();
         let mut length: f64 = coarse.windows(2).map(|w| w[0].distance(w[1])).sum();
         let chord = self.points[last] - self.points[0];
         let mut unknowns = vec![libm::atan2(chord.y, chord.x), 0.0];

@@ -89,10 +89,7 @@ pub struct TracedError {
 impl TracedError {
     fn at(point: usize, must: impl Into<String>) -> Self {
         let must = must.into();
-        Self {
-            point: Some(point),
-            must,
-        }
+        Self { point: Some(point), must }
     }
 
     fn whole(must: impl Into<String>) -> Self {
@@ -135,16 +132,8 @@ impl TracedShape {
             Some(degree) => degree,
             None => traced.choose(&curves).map_err(failed)?,
         };
-        let CurveFit {
-            length,
-            pose,
-            distances,
-            ..
-        } = curves.swap_remove(chosen);
-        let squares = distances
-            .iter()
-            .map(|distance| distance * distance)
-            .sum::<f64>();
+        let CurveFit { length, pose, distances, .. } = curves.swap_remove(chosen);
+        let squares = distances.iter().map(|distance| distance * distance).sum::<f64>();
         let rms_mm = (squares / distances.len() as f64).sqrt();
         // A length of NaN is not long enough either.
         let is_whisker = rms_mm <= LARGEST_RMS * length && length >= (1.0 - LARGEST_FALL) * reach;
@@ -163,9 +152,7 @@ impl TracedShape {
             curvature: CurvaturePolynomial::new(pose.legendre),
             length_mm: length,
             rms_mm,
-            farthest_mm: distances
-                .iter()
-                .fold(0.0, |most, distance| distance.abs().max(most)),
+            farthest_mm: distances.iter().fold(0.0, |most, distance| distance.abs().max(most)),
             base_mm: pose.base.into(),
             base_angle: pose.angle,
         })
@@ -208,9 +195,7 @@ impl TracedShape {
         let (base, scale) = (DVec2::from(self.base_mm), length_mm / self.length_mm);
         let back = scale * DVec2::new(cos, -sin);
         let points = self.points_mm.iter();
-        points
-            .map(|point| back.rotate(DVec2::from(*point) - base).into())
-            .collect()
+        points.map(|point| back.rotate(DVec2::from(*point) - base).into()).collect()
     }
 }
 
@@ -226,12 +211,8 @@ pub(crate) fn common_degree(shapes: &[Vec<[f64; 2]>], cancel: &AtomicBool) -> Op
     });
     let squares: Vec<Vec<Vec<f64>>> = squares.collect();
     let most = squares.iter().map(Vec::len).min()?;
-    let pooled = |degree: usize| {
-        squares
-            .iter()
-            .flat_map(|by_degree| by_degree[degree].clone())
-            .collect()
-    };
+    let pooled =
+        |degree: usize| squares.iter().flat_map(|by_degree| by_degree[degree].clone()).collect();
     let pooled: Vec<Vec<f64>> = (0..most).map(pooled).collect();
     Some(smallest_degree(&pooled, EXACT))
 }
@@ -269,9 +250,7 @@ fn most_degree(count: usize, degree: Option<usize>) -> Result<usize, TracedError
 /// Checks each point, and returns the largest distance from the first one, in millimetres.
 fn check(points_mm: &[[f64; 2]]) -> Result<f64, TracedError> {
     let far = |[x, y]: [f64; 2]| libm::hypot(x - points_mm[0][0], y - points_mm[0][1]);
-    let largest = points_mm
-        .iter()
-        .fold(0.0, |most: f64, point| most.max(far(*point)));
+    let largest = points_mm.iter().fold(0.0, |most: f64, point| most.max(far(*point)));
     let mut reach = 0.0_f64;
     for (i, &[x, y]) in points_mm.iter().enumerate() {
         let is_near = |coordinate: f64| coordinate.abs() <= FARTHEST_MM;

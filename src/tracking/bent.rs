@@ -54,17 +54,8 @@ pub(super) struct TrackedRod {
 impl TrackedRod {
     /// Creates a whisker with this taper, curvature at rest over its length, and length in mm.
     pub fn new(taper: f64, curvature: CurvaturePolynomial, length_mm: f64) -> Self {
-        let rod = Rod {
-            taper,
-            polynomial: Some(Arc::new(curvature)),
-            ..Rod::default()
-        };
-        Self {
-            rest: Rest::new(&rod),
-            rod,
-            curvature,
-            length_mm,
-        }
+        let rod = Rod { taper, polynomial: Some(Arc::new(curvature)), ..Rod::default() };
+        Self { rest: Rest::new(&rod), rod, curvature, length_mm }
     }
 
     /// Returns the radius at an arclength over that at the base.
@@ -112,26 +103,19 @@ impl BentPose {
 
     fn unknowns(&self) -> Vec<f64> {
         let pose = [self.base.x, self.base.y, self.angle];
-        pose.into_iter()
-            .chain(self.load.into_iter().flatten())
-            .collect()
+        pose.into_iter().chain(self.load.into_iter().flatten()).collect()
     }
 
     /// Returns the pose with the base at the origin and its tangent along the first axis.
     const fn in_base_frame(&self) -> Self {
-        Self {
-            base: DVec2::ZERO,
-            angle: 0.0,
-            load: self.load,
-        }
+        Self { base: DVec2::ZERO, angle: 0.0, load: self.load }
     }
 
     /// Returns the position of the contact in the frame of the base, in lengths of the whisker, and the angle of the tangent there from the
     /// base's, in radians; `None` at rest.
     pub fn contact(&self, whisker: &TrackedRod) -> Option<(DVec2, f64)> {
-        let BentPoint {
-            position, tangent, ..
-        } = self.in_base_frame().points(whisker, &[]).contact?.0;
+        let BentPoint { position, tangent, .. } =
+            self.in_base_frame().points(whisker, &[]).contact?.0;
         Some((position, libm::atan2(tangent.y, tangent.x)))
     }
 
@@ -159,10 +143,7 @@ impl BentPose {
                     by: [DVec2::ZERO; 2],
                 }
             };
-            return BentPoints {
-                points: places.iter().map(point).collect(),
-                contact: None,
-            };
+            return BentPoints { points: places.iter().map(point).collect(), contact: None };
         };
         let radius = whisker.radius(contact);
         let load = force / (radius * radius);
@@ -205,12 +186,7 @@ impl BentPose {
         let beyond = places[loaded.len() - 1..].iter().map(|s| {
             let (position, tangent) = at_rest(back, *s, from);
             let by_contact = -DVec2::X - at_contact * position.perp();
-            place(
-                position,
-                tangent,
-                rest.curvature(*s),
-                [by_contact, DVec2::ZERO],
-            )
+            place(position, tangent, rest.curvature(*s), [by_contact, DVec2::ZERO])
         });
         BentPoints {
             points: before.chain(beyond).collect(),
@@ -319,10 +295,7 @@ impl BoundedProblem for FrameProblem<'_> {
             return None;
         }
         let residuals = self.residuals_at(&self.feet(&BentPose::of(x)).0);
-        residuals
-            .iter()
-            .all(|residual| residual.is_finite())
-            .then_some(residuals)
+        residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
     }
 
     fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
@@ -348,19 +321,9 @@ impl BoundedProblem for FrameProblem<'_> {
         let across =
             |foot: &BentPoint, point: DVec2| (point - foot.position).dot(foot.tangent.perp());
         let base = &feet.points[0];
-        push(
-            base.tangent,
-            base,
-            across(base, self.frame.points[0]),
-            [0.0; 2],
-        );
+        push(base.tangent, base, across(base, self.frame.points[0]), [0.0; 2]);
         if let Some((contact, angle_by)) = feet.contact.as_ref().filter(|_| self.is_at_pole) {
-            push(
-                contact.tangent,
-                contact,
-                across(contact, self.frame.pole),
-                *angle_by,
-            );
+            push(contact.tangent, contact, across(contact, self.frame.pole), *angle_by);
         }
         Some(columns)
     }
@@ -402,11 +365,7 @@ pub(super) fn fit(
         FittedLoad::Rest => None,
         FittedLoad::Pole(s) | FittedLoad::Place(s) => Some(s.clamp(CONTACTS[0], CONTACTS[1])),
     };
-    let start = BentPose {
-        base: frame.points[0],
-        angle,
-        load: contact.map(|s| [s, 0.0]),
-    };
+    let start = BentPose { base: frame.points[0], angle, load: contact.map(|s| [s, 0.0]) };
     let mut problem = FrameProblem {
         whisker,
         frame,
@@ -427,10 +386,8 @@ pub(super) fn fit(
     let x = found(&problem, &guess, TOLERANCE)?;
     let pose = BentPose::of(&x);
     let (feet, end) = problem.feet(&pose);
-    let is_beside = x
-        .get(3)
-        .zip(problem.contacts)
-        .is_some_and(|(s, [least, most])| *s > least && *s < most);
+    let is_beside =
+        x.get(3).zip(problem.contacts).is_some_and(|(s, [least, most])| *s > least && *s < most);
     let contact = feet.contact.as_ref().filter(|_| is_beside);
     let offset = contact.map(|(contact, _)| {
         let away = frame.pole - contact.position;

@@ -55,10 +55,8 @@ impl RodFrame {
             return None;
         }
         let pole = DVec2::from(pole_mm) / length_mm;
-        let points: Vec<DVec2> = points_mm
-            .iter()
-            .map(|point| DVec2::from(*point) / length_mm)
-            .collect();
+        let points: Vec<DVec2> =
+            points_mm.iter().map(|point| DVec2::from(*point) / length_mm).collect();
         let places = places(&points);
         let near = |i: usize| {
             let (from, step) = (points[i], points[i + 1] - points[i]);
@@ -75,11 +73,7 @@ impl RodFrame {
             angle: libm::atan2(chord.y, chord.x),
             contact,
             far,
-            traced: FramePoints {
-                points,
-                pole,
-                places,
-            },
+            traced: FramePoints { points, pole, places },
         })
     }
 
@@ -208,10 +202,7 @@ impl CommonRest {
                 let whisker = TrackedRod::new(0.0, polynomial(x), 1.0);
                 residuals(frames, |frame| frame.at_rest(&whisker, cancel))
             },
-            count: frames
-                .iter()
-                .map(|frame| frame.traced.points.len() + 1)
-                .sum(),
+            count: frames.iter().map(|frame| frame.traced.points.len() + 1).sum(),
             range: [f64::NEG_INFINITY, f64::INFINITY],
         }
     }
@@ -246,8 +237,7 @@ impl CommonRest {
 
     /// Returns the number of residuals over that of unknowns, with the pose of each frame.
     fn left(&self, frames: usize) -> usize {
-        self.count
-            .saturating_sub(3 * frames + self.coefficients.len())
+        self.count.saturating_sub(3 * frames + self.coefficients.len())
     }
 
     /// Returns the root mean square of the distances of points in so many frames. Each frame has one more residual than points.
@@ -322,10 +312,7 @@ impl CommonTaper {
             let whisker = TrackedRod::new(taper, polynomial(coefficients), length_mm);
             residuals(frames, |frame| frame.bent(&whisker, cancel))
         };
-        let count = frames
-            .iter()
-            .map(|frame| frame.traced.points.len() + 2)
-            .sum();
+        let count = frames.iter().map(|frame| frame.traced.points.len() + 2).sum();
         let problem = CommonProblem {
             residuals: |x: &[f64]| of_rod(x[0], coefficients),
             count,
@@ -341,9 +328,7 @@ impl CommonTaper {
         };
         // The taper at which the sum of squares is least follows the coefficients (implicit function theorem).
         let by_coefficients = at_rest.jacobian(coefficients, &[])?;
-        let gradient = by_coefficients
-            .iter()
-            .map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
+        let gradient = by_coefficients.iter().map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
         let of_rest = scatter.deviation(&gradient.collect::<Vec<_>>());
         // Each frame has five unknowns.
         let left = count.saturating_sub(5 * frames.len() + 1).max(1);
@@ -357,11 +342,8 @@ impl CommonTaper {
     pub fn note(&self, count: usize) -> String {
         let [taper, deviation] =
             [self.taper, self.deviation].map(|number| digits(rounded(number, 3)));
-        let advice = if self.deviation > ROUGH_TAPER {
-            ": give it by --taper, if it is known"
-        } else {
-            ""
-        };
+        let advice =
+            if self.deviation > ROUGH_TAPER { ": give it by --taper, if it is known" } else { "" };
         format!(
             "the taper is {taper}, with a standard deviation of {deviation}, from {count} frames in contact{advice}"
         )

@@ -52,19 +52,13 @@ impl<'a> Curves<'a> {
         let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
             let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
             let name = axis.name();
-            let found = if options.face_axis.is_some() {
-                ""
-            } else {
-                ", as the ends of the segments show"
-            };
-            remarks.notes.push(format!(
-                "angles are measured from the {name} axis of the image{found}"
-            ));
+            let found =
+                if options.face_axis.is_some() { "" } else { ", as the ends of the segments show" };
+            remarks
+                .notes
+                .push(format!("angles are measured from the {name} axis of the image{found}"));
             let arcs = frames.iter().map(|frame| arc(frame, axis, scale));
-            (
-                arcs.collect(),
-                "angle, curvature, follicle and tip".to_owned(),
-            )
+            (arcs.collect(), "angle, curvature, follicle and tip".to_owned())
         } else {
             if let Some(axis) = options.face_axis {
                 let must = "must be left out: only measurements of whisk have angles".to_owned();
@@ -96,22 +90,12 @@ impl<'a> Curves<'a> {
                 "the image is mirrored, so that the concave side is CF: from base to tip, the whisker turns clockwise, by {degrees:.1} deg (median)"
             ));
         }
-        Ok(Self {
-            frames,
-            mm_per_pixel: scale,
-            curves,
-            is_mirrored,
-            needs,
-        })
+        Ok(Self { frames, mm_per_pixel: scale, curves, is_mirrored, needs })
     }
 
     /// Returns the frames with these numbers, mirrored if need be; frames that the file does not have are gaps.
     pub fn of_frames(self, numbers: RangeInclusive<u64>) -> Vec<CurvedFrame> {
-        let y_scale = if self.is_mirrored {
-            self.mm_per_pixel
-        } else {
-            -self.mm_per_pixel
-        };
+        let y_scale = if self.is_mirrored { self.mm_per_pixel } else { -self.mm_per_pixel };
         let mm = |[x, y]: [f64; 2]| [self.mm_per_pixel * x, y_scale * y];
         let mut frames = self.frames.iter().zip(self.curves).peekable();
         let frame = |number: u64| {
@@ -130,11 +114,7 @@ impl<'a> Curves<'a> {
             };
             let points = frame.points_px.iter().flatten().map(|point| mm(*point));
             CurvedFrame {
-                points_mm: if curve.is_ok() {
-                    points.collect()
-                } else {
-                    Vec::new()
-                },
+                points_mm: if curve.is_ok() { points.collect() } else { Vec::new() },
                 pole_mm: frame.pole_px.map(mm),
                 curve,
                 ..lost
@@ -162,41 +142,29 @@ fn traced_frames(
     cancel: &AtomicBool,
     remarks: &mut Remarks,
 ) -> (Vec<Result<FrameCurve, NoFrame>>, String) {
-    let points: Vec<Option<Vec<[f64; 2]>>> = frames
-        .iter()
-        .map(|frame| frame.points_mm(options.mm_per_pixel))
-        .collect();
+    let points: Vec<Option<Vec<[f64; 2]>>> =
+        frames.iter().map(|frame| frame.points_mm(options.mm_per_pixel)).collect();
     let known = || points.iter().flatten();
     let far = |points: &[[f64; 2]], i: usize| {
         libm::hypot(points[i][0] - points[0][0], points[i][1] - points[0][1])
     };
     let length = |points: &Vec<[f64; 2]>| {
         let steps = points.windows(2);
-        steps
-            .map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]))
-            .sum::<f64>()
+        steps.map(|pair| libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1])).sum::<f64>()
     };
     let length_mm = median(known().map(length));
     let few = median(known().map(|points| far(points, (MANY_POINTS - 1).min(points.len() - 1))));
     // A little more, so that rounding leaves no point out.
-    let reach_mm = options
-        .fit_to_mm
-        .unwrap_or_else(|| (NEAR * length_mm).max(few + 1e-3 * length_mm));
+    let reach_mm =
+        options.fit_to_mm.unwrap_or_else(|| (NEAR * length_mm).max(few + 1e-3 * length_mm));
     let near = |points: &Vec<[f64; 2]>| -> Vec<[f64; 2]> {
-        let first = points
-            .iter()
-            .enumerate()
-            .take_while(|(i, _)| far(points, *i) <= reach_mm);
+        let first = points.iter().enumerate().take_while(|(i, _)| far(points, *i) <= reach_mm);
         first.map(|(_, point)| *point).collect()
     };
     let points_each = median(known().map(|points| points.len() as f64));
     let are_few = points_each < ENOUGH_POINTS;
     if are_few {
-        let or = if options.pole.is_none() {
-            ", or 5 with --pole"
-        } else {
-            ""
-        };
+        let or = if options.pole.is_none() { ", or 5 with --pole" } else { "" };
         remarks.warnings.push(format!(
             "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough{or}"
         ));
@@ -209,15 +177,11 @@ fn traced_frames(
     remarks.warnings.extend(why.warning(shows_contact));
     let notes = &mut remarks.notes;
     let mut degree_of = |shapes: Vec<Vec<[f64; 2]>>, what: &str| {
-        options
-            .degree
-            .unwrap_or_else(|| degree(&shapes, what, cancel, notes))
+        options.degree.unwrap_or_else(|| degree(&shapes, what, cancel, notes))
     };
     let part = digits(rounded(reach_mm, 3));
-    let near_degree = degree_of(
-        known().map(near).collect(),
-        &format!("near the base, up to {part} mm from it,"),
-    );
+    let near_degree =
+        degree_of(known().map(near).collect(), &format!("near the base, up to {part} mm from it,"));
     let whole_degree = degree_of(known().cloned().collect(), "of whole whiskers");
     let frame = |points: &Option<Vec<[f64; 2]>>| {
         let whole = points.as_ref().ok_or(NoFrame::Missing)?;
@@ -231,11 +195,7 @@ fn traced_frames(
         let near = fit(near(whole), near_degree)?;
         let whole = fit(whole.clone(), whole_degree)?;
         let curve = FrameCurve::traced(&near, &whole);
-        Ok(if shows_contact {
-            curve
-        } else {
-            curve.hiding_contact()
-        })
+        Ok(if shows_contact { curve } else { curve.hiding_contact() })
     };
     let mut needs = smooth_points(MORE_POINTS + near_degree);
     if known().next().is_some() {
@@ -253,10 +213,7 @@ fn degree(
     cancel: &AtomicBool,
     notes: &mut Vec<String>,
 ) -> usize {
-    let many: Vec<_> = shapes
-        .iter()
-        .filter(|shape| shape.len() >= MANY_POINTS)
-        .collect();
+    let many: Vec<_> = shapes.iter().filter(|shape| shape.len() >= MANY_POINTS).collect();
     // Cross-validation in a few frames does not speak for all.
     let (degree, how) = if 2 * many.len() <= shapes.len() {
         let count = median(shapes.iter().map(|shape| shape.len() as f64)) as usize;
@@ -266,14 +223,9 @@ fn degree(
         let count = many.len().min(CHOSEN_FRAMES);
         let some: Vec<_> = evenly(&many, count).into_iter().cloned().collect();
         let degree = common_degree(&some, cancel).unwrap_or_default();
-        (
-            degree,
-            format!("chosen by cross-validation in {count} frames"),
-        )
+        (degree, format!("chosen by cross-validation in {count} frames"))
     };
-    notes.push(format!(
-        "curves {what} have a curvature of degree {degree}, {how}"
-    ));
+    notes.push(format!("curves {what} have a curvature of degree {degree}, {how}"));
     degree
 }
 
@@ -311,19 +263,14 @@ fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
         });
         each.sum()
     };
-    if closeness(FaceAxis::X) > closeness(FaceAxis::Y) {
-        FaceAxis::X
-    } else {
-        FaceAxis::Y
-    }
+    if closeness(FaceAxis::X) > closeness(FaceAxis::Y) { FaceAxis::X } else { FaceAxis::Y }
 }
 
 /// The arc of a measured segment, with the y axis upward.
 fn arc(frame: &ImageFrame, axis: FaceAxis, scale: f64) -> Result<FrameCurve, NoFrame> {
     let (follicle, chord, curvature, angle) = measured(frame).ok_or(NoFrame::Missing)?;
-    let half = half_turn(chord, curvature)
-        .filter(|_| chord.length() > 0.0)
-        .ok_or(NoFrame::NoCurve)?;
+    let half =
+        half_turn(chord, curvature).filter(|_| chord.length() > 0.0).ok_or(NoFrame::NoCurve)?;
     let length = match half {
         0.0 => chord.length(),
         _ => 2.0 * half / curvature,

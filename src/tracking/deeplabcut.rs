@@ -29,9 +29,7 @@ pub(super) fn read(
     let table = lines.table(
         CsvLine {
             number: header[2].number,
-            cells: std::iter::once("frame")
-                .chain(columns.iter().map(String::as_str))
-                .collect(),
+            cells: std::iter::once("frame").chain(columns.iter().map(String::as_str)).collect(),
         },
         origin,
     )?;
@@ -43,11 +41,7 @@ pub(super) fn read(
         _ => None,
     };
     let along: Vec<&str> = match options.points.is_empty() {
-        true => parts
-            .iter()
-            .copied()
-            .filter(|part| Some(*part) != pole)
-            .collect(),
+        true => parts.iter().copied().filter(|part| Some(*part) != pole).collect(),
         false => options.points.iter().map(String::as_str).collect(),
     };
     if let Some(name) = along.iter().find(|name| !parts.contains(name)) {
@@ -116,11 +110,8 @@ fn positions(
     let likelihoods = column("likelihood", "a number between 0 and 1", |likelihood| {
         (0.0..=1.0).contains(&likelihood)
     })?;
-    let is_known = |i: usize| {
-        likelihoods
-            .as_ref()
-            .is_none_or(|likelihoods| likelihoods[i] >= likelihood)
-    };
+    let is_known =
+        |i: usize| likelihoods.as_ref().is_none_or(|likelihoods| likelihoods[i] >= likelihood);
     let pairs = x?.into_iter().zip(y?).enumerate();
     let position = |(i, (x, y)): (usize, (f64, f64))| {
         Some([x, y]).filter(|_| !x.is_nan() && !y.is_nan() && is_known(i))
@@ -141,17 +132,13 @@ fn frames(
     let are_images = cells.is_some_and(|are_numbers| !are_numbers.contains(&true));
     let numbers: Vec<u64> = match are_images {
         true => (0..table.lines().count() as u64).collect(),
-        false => table
-            .values("frame", FRAME_NUMBERS, frame_number)?
-            .unwrap_or_default(),
+        false => table.values("frame", FRAME_NUMBERS, frame_number)?.unwrap_or_default(),
     };
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {
         if let Some(before) = frames.last().filter(|frame| frame.number >= number) {
-            let what = format!(
-                "frame {number}: must be more than {} of the line before",
-                before.number
-            );
+            let what =
+                format!("frame {number}: must be more than {} of the line before", before.number);
             return Err(CsvError::at(&table.origin, line, what));
         }
         frames.push(ImageFrame {
@@ -173,17 +160,11 @@ fn remarks(
     likelihood: f64,
 ) -> Remarks {
     let used = || along.iter().chain(pole);
-    let unused: Vec<&str> = parts
-        .iter()
-        .copied()
-        .filter(|part| used().all(|(name, _)| name != part))
-        .collect();
+    let unused: Vec<&str> =
+        parts.iter().copied().filter(|part| used().all(|(name, _)| name != part)).collect();
     let unused = (!unused.is_empty()).then(|| {
         let names = unused.join(", ");
-        format!(
-            "{origin}: body parts that are not used: {}",
-            shortened(&names)
-        )
+        format!("{origin}: body parts that are not used: {}", shortened(&names))
     });
     let lost = used().filter(|(_, positions)| positions.iter().all(Option::is_none));
     let lost = lost.map(|(name, _)| {
@@ -196,8 +177,5 @@ fn remarks(
             "body part {name}: lost in all frames, at a likelihood of at least {likelihood}: {what}"
         )
     });
-    Remarks {
-        notes: unused.into_iter().collect(),
-        warnings: lost.collect(),
-    }
+    Remarks { notes: unused.into_iter().collect(), warnings: lost.collect() }
 }

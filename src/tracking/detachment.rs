@@ -45,11 +45,7 @@ pub(super) fn detachments(
             _ => {}
         }
     }
-    left_out += u32::from(
-        known
-            .last()
-            .is_some_and(|(_, is_in_contact)| *is_in_contact),
-    );
+    left_out += u32::from(known.last().is_some_and(|(_, is_in_contact)| *is_in_contact));
     if left_out > 0 {
         remarks.notes.push(format!(
             "contacts that give no detachment, as first touch or end is next to a gap or outside the film: {left_out}"
@@ -72,11 +68,7 @@ fn detachment(
     let between = |i: usize| Some(0.5 * (rows[i - 1].angle_deg? + rows[i].angle_deg?));
     let push_angle_deg = between(end)? - between(touch)?;
     Some(TrackedDetachment {
-        side: if is_left(touch - 1)? {
-            Side::Cf
-        } else {
-            Side::Cb
-        },
+        side: if is_left(touch - 1)? { Side::Cf } else { Side::Cb },
         distance_mm: places[touch]?.at_mm.length(),
         push_angle_deg,
         time_s: rows[end - 1].time_s,

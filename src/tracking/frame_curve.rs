@@ -43,16 +43,9 @@ pub(super) struct NearestPlace {
 #[derive(Clone, Debug)]
 enum CurveForm {
     /// Curves of polynomial curvature: near the base, where a low degree is enough, and of the whole whisker.
-    Polynomials {
-        near: Arc<PlaneCurve>,
-        whole: Arc<PlaneCurve>,
-    },
+    Polynomials { near: Arc<PlaneCurve>, whole: Arc<PlaneCurve> },
     /// Rod between base and contact, and its rest shape beyond.
-    Bent {
-        whisker: Arc<TrackedRod>,
-        pose: BentPose,
-        contact: NearestPlace,
-    },
+    Bent { whisker: Arc<TrackedRod>, pose: BentPose, contact: NearestPlace },
 }
 
 /// Curve of a whisker in one frame.
@@ -82,10 +75,7 @@ impl PlaneCurve {
     }
 
     fn rest(&self) -> Rest {
-        Rest::new(&Rod {
-            polynomial: Some(Arc::new(self.curvature)),
-            ..Rod::default()
-        })
+        Rest::new(&Rod { polynomial: Some(Arc::new(self.curvature)), ..Rod::default() })
     }
 
     /// Returns the place that is nearest to a point in mm, in lengths of the curve, and the signed distance of the point in mm, positive on
@@ -115,12 +105,7 @@ impl PlaneCurve {
 impl FrameCurve {
     /// Creates the curve of the arc from `base` with this length, both in mm, and this curvature over the length.
     pub fn arc(base: DVec2, angle: f64, curvature: CurvaturePolynomial, length_mm: f64) -> Self {
-        let arc = Arc::new(PlaneCurve {
-            base,
-            angle,
-            curvature,
-            length_mm,
-        });
+        let arc = Arc::new(PlaneCurve { base, angle, curvature, length_mm });
         Self::polynomials(Arc::clone(&arc), arc, length_mm, None)
     }
 
@@ -146,18 +131,10 @@ impl FrameCurve {
                 ..Self::polynomials(Arc::clone(&rest), rest, length_mm, rms_mm)
             };
         };
-        let contact = NearestPlace {
-            at_mm: scale * at,
-            angle,
-            offset_mm: scale * offset,
-            is_ahead: false,
-        };
+        let contact =
+            NearestPlace { at_mm: scale * at, angle, offset_mm: scale * offset, is_ahead: false };
         Self {
-            form: CurveForm::Bent {
-                whisker: Arc::clone(whisker),
-                pose,
-                contact,
-            },
+            form: CurveForm::Bent { whisker: Arc::clone(whisker), pose, contact },
             loaded: None,
             is_mirrored: false,
             shows_contact: true,
@@ -184,18 +161,12 @@ impl FrameCurve {
 
     /// Returns the curve as one that does not show whether the whisker touches the pole.
     pub fn hiding_contact(self) -> Self {
-        Self {
-            shows_contact: false,
-            ..self
-        }
+        Self { shows_contact: false, ..self }
     }
 
     /// Returns the curve with the other sign of the y axis.
     pub fn mirrored(self) -> Self {
-        Self {
-            is_mirrored: !self.is_mirrored,
-            ..self
-        }
+        Self { is_mirrored: !self.is_mirrored, ..self }
     }
 
     /// Returns a number that changes its sign with the y axis.

@@ -27,14 +27,7 @@ const NEEDED: [&[&str]; 7] = [
 const IDENTITY: [&str; 3] = ["label", "wid", "whisker_id"];
 
 /// Other columns of the format.
-const OTHERS: [&str; 6] = [
-    "face_x",
-    "face_y",
-    "length",
-    "pixel_length",
-    "score",
-    "chunk_start",
-];
+const OTHERS: [&str; 6] = ["face_x", "face_y", "length", "pixel_length", "score", "chunk_start"];
 
 /// Largest size of a position in pixels, and of a curvature in 1/px.
 const MOST: f64 = 1e6;
@@ -76,10 +69,7 @@ pub(super) fn read(
     let mut doubles = 0;
     for (i, (frame, identity)) in numbers.into_iter().zip(identities).enumerate() {
         let (follicle, tip, bend) = ([x[i], y[i]], [tip_x[i], tip_y[i]], [angle[i], curvature[i]]);
-        let is_known = [follicle, tip, bend]
-            .concat()
-            .iter()
-            .all(|number| !number.is_nan());
+        let is_known = [follicle, tip, bend].concat().iter().all(|number| !number.is_nan());
         if identity != whisker || !is_known {
             continue;
         }
@@ -102,10 +92,7 @@ pub(super) fn read(
     Ok(ImageFrames {
         frames: frames.into_values().map(|(_, frame)| frame).collect(),
         order: PointOrder::FromBase,
-        remarks: Remarks {
-            notes: note.into_iter().chain(doubles).collect(),
-            ..Remarks::default()
-        },
+        remarks: Remarks { notes: note.into_iter().chain(doubles).collect(), ..Remarks::default() },
     })
 }
 
@@ -127,11 +114,7 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
     let given = [
         ("curvature_at_mm", curvature_at_mm.map(digits), of_curvature),
         ("fit_to_mm", fit_to_mm.map(digits), without_points),
-        (
-            "degree",
-            degree.as_ref().map(usize::to_string),
-            without_points,
-        ),
+        ("degree", degree.as_ref().map(usize::to_string), without_points),
         ("taper", taper.map(digits), without_points),
         ("follicle_px", follicle, "they name the follicle"),
         ("points", points.first().cloned(), "they have no body parts"),
@@ -171,10 +154,8 @@ fn only(given: Option<i64>, column: &str, identities: &[i64]) -> Result<i64, Tra
     match (given, counts.len()) {
         (None, 1) => Ok(counts.into_keys().next().unwrap_or_default()),
         _ => {
-            let shown = counts
-                .iter()
-                .take(10)
-                .map(|(label, count)| format!("{label} ({count} rows)"));
+            let shown =
+                counts.iter().take(10).map(|(label, count)| format!("{label} ({count} rows)"));
             let more = if counts.len() > 10 { ", ..." } else { "" };
             let must = format!(
                 "must be an identity in the column {column}: {}{more}",

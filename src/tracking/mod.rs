@@ -211,9 +211,7 @@ impl Tracking {
         }
         let mut remarks = image.remarks;
         let (frames, contacts) = rows::frames(&curves, options, &mut remarks)?;
-        let shapes = curves
-            .iter()
-            .map(|frame| (frame.number, frame.points_mm.clone()));
+        let shapes = curves.iter().map(|frame| (frame.number, frame.points_mm.clone()));
         Ok(Self {
             format,
             detachments: detachment::detachments(&frames, &contacts, &mut remarks),
@@ -246,14 +244,9 @@ impl Tracking {
             )));
         };
         if points.is_empty() {
-            return Err(refused(
-                "must be a frame with a whisker: this one is a gap".to_owned(),
-            ));
+            return Err(refused("must be a frame with a whisker: this one is a gap".to_owned()));
         }
-        let point = |[x_mm, y_mm]: &[f64; 2]| TrackedPoint {
-            x_mm: *x_mm,
-            y_mm: *y_mm,
-        };
+        let point = |[x_mm, y_mm]: &[f64; 2]| TrackedPoint { x_mm: *x_mm, y_mm: *y_mm };
         Ok(points.iter().map(point).collect())
     }
 }

@@ -24,10 +24,8 @@ impl TrackingFormat {
         let is_content = |line: &&str| !line.trim().is_empty() && !line.starts_with('#');
         let text = text.trim_start_matches('\u{feff}');
         let line = text.lines().find(is_content).unwrap_or_default();
-        let cells: Vec<&str> = line
-            .split([',', ';', '\t'])
-            .map(|cell| cell.trim().trim_matches('"'))
-            .collect();
+        let cells: Vec<&str> =
+            line.split([',', ';', '\t']).map(|cell| cell.trim().trim_matches('"')).collect();
         let is_number =
             |cell: &&str| is_missing(cell) || cell.replace(',', ".").parse::<f64>().is_ok();
         match &cells[..] {
@@ -202,19 +200,11 @@ pub enum TrackingError {
 
 /// Error about an option.
 pub(super) fn refused(option: &'static str, value: &str, must: String) -> TrackingError {
-    TrackingError::Option {
-        option,
-        value: value.to_owned(),
-        must,
-    }
+    TrackingError::Option { option, value: value.to_owned(), must }
 }
 
 /// Error about the name of a body part that a file does not have.
 pub(super) fn unknown(option: &'static str, name: &str, known: &[&str]) -> TrackingError {
     let hint = did_you_mean(name, known.iter().copied());
-    refused(
-        option,
-        name,
-        format!("must be one of {}{hint}", known.join(", ")),
-    )
+    refused(option, name, format!("must be one of {}{hint}", known.join(", ")))
 }

@@ -32,51 +32,33 @@ pub(super) fn read(
             2 => &["x", "y"],
             3 if texts.len() == 1 => &["frame", "x", "y"],
             _ => {
-                let allowed = if texts.len() == 1 {
-                    "x,y or frame,x,y"
-                } else {
-                    "x,y"
-                };
+                let allowed = if texts.len() == 1 { "x,y or frame,x,y" } else { "x,y" };
                 let what = format!("has {columns} cells: must have {allowed}");
                 return Err(CsvError::at(origin, lines.lines[0].number, what).into());
             }
         };
         let is_lost = lines.lines.is_empty();
         if is_lost && texts.len() == 1 {
-            return Err(
-                CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into(),
-            );
+            return Err(CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into());
         }
-        let header = CsvLine {
-            number: 0,
-            cells: names.to_vec().into(),
-        };
+        let header = CsvLine { number: 0, cells: names.to_vec().into() };
         let table = lines.table(header, origin)?;
         let must = "a number between -1e6 and 1e6";
         let column =
             |name: &str| table.measurements(name, must, |coordinate| coordinate.abs() <= 1e6);
-        let (x, y) = (
-            column("x")?.unwrap_or_default(),
-            column("y")?.unwrap_or_default(),
-        );
+        let (x, y) = (column("x")?.unwrap_or_default(), column("y")?.unwrap_or_default());
         let whole = "a whole number of at least 0";
         let numbers = table.values("frame", whole, |cell| cell.parse::<u64>().ok())?;
         let mut add = |number: u64, points: &mut dyn Iterator<Item = Option<[f64; 2]>>| match frames
             .last_mut()
         {
             Some(frame) if frame.number == number => frame.points_px.extend(points),
-            _ => frames.push(ImageFrame {
-                number,
-                points_px: points.collect(),
-                bend: None,
-                pole_px,
-            }),
+            _ => {
+                frames.push(ImageFrame { number, points_px: points.collect(), bend: None, pole_px })
+            }
         };
         let is_known = |point: &[f64; 2]| point.iter().all(|coordinate| !coordinate.is_nan());
-        let points = x
-            .into_iter()
-            .zip(y)
-            .map(|(x, y)| Some([x, y]).filter(is_known));
+        let points = x.into_iter().zip(y).map(|(x, y)| Some([x, y]).filter(is_known));
         let Some(numbers) = numbers else {
             add(file as u64, &mut points.into_iter());
             continue;
@@ -92,9 +74,5 @@ pub(super) fn read(
             add(number, &mut std::iter::once(point));
         }
     }
-    Ok(ImageFrames {
-        frames,
-        order: PointOrder::Along,
-        remarks: Remarks::default(),
-    })
+    Ok(ImageFrames { frames, order: PointOrder::Along, remarks: Remarks::default() })
 }

@@ -57,11 +57,8 @@ const OFF: f64 = 2.0;
 
 /// Returns the position of the pole in each frame, or in the nearest frame that has it, `[frame]`; `None` without any.
 fn poles(frames: &[ImageFrame]) -> Option<Vec<[f64; 2]>> {
-    let known: Vec<(usize, [f64; 2])> = frames
-        .iter()
-        .enumerate()
-        .filter_map(|(i, frame)| Some((i, frame.pole_px?)))
-        .collect();
+    let known: Vec<(usize, [f64; 2])> =
+        frames.iter().enumerate().filter_map(|(i, frame)| Some((i, frame.pole_px?))).collect();
     let nearest = |i: usize| {
         let after = known.partition_point(|(frame, _)| *frame < i);
         let around = [after.checked_sub(1), Some(after)].into_iter().flatten();
@@ -109,11 +106,7 @@ impl NoRods {
                 format!("frames far from the pole have no shape at rest in common{scatter}")
             }
         };
-        let contact = if shows_contact {
-            ""
-        } else {
-            " that do not show contact, which is empty"
-        };
+        let contact = if shows_contact { "" } else { " that do not show contact, which is empty" };
         let advice = match self {
             Self::Unlike(_) => {
                 "; check the pole's position, whose y axis points downward, and that the trace goes past it; only --mirror mirrors the image"
@@ -147,8 +140,7 @@ impl Film<'_> {
     /// Returns the frames in units of a length, `[frame]`; `None` without a base or with too few points.
     fn frames(&self, length_mm: f64) -> Vec<Option<RodFrame>> {
         let all = self.points.iter().zip(&self.poles);
-        all.map(|(points, pole)| RodFrame::new(points.as_deref()?, *pole, length_mm))
-            .collect()
+        all.map(|(points, pole)| RodFrame::new(points.as_deref()?, *pole, length_mm)).collect()
     }
 
     /// Returns the shape at rest, with a curvature of this degree or of the best one.
@@ -166,9 +158,7 @@ impl Film<'_> {
         }
         let frames = self.frames(chord_mm);
         let beyond = 2.0 * self.within_mm / chord_mm + FREE;
-        let free = free(&frames, beyond).ok_or(NoRods::Few {
-            beyond_mm: chord_mm * beyond,
-        })?;
+        let free = free(&frames, beyond).ok_or(NoRods::Few { beyond_mm: chord_mm * beyond })?;
         let sample: Vec<&RodFrame> = free.iter().filter_map(|i| frames[*i].as_ref()).collect();
         let first = CommonRest::new(&sample, &[], FIRST_DEGREE, cancel).ok_or_else(unlike)?;
         let whisker = TrackedRod::new(0.0, polynomial(&first.coefficients), chord_mm);
@@ -206,12 +196,7 @@ impl Film<'_> {
         let typical = rest.whisker(TYPICAL_TAPER);
         let within = self.within_mm / typical.length_mm;
         let bent = most_bent(frames, &typical, within, self.cancel);
-        let FilmRest {
-            coefficients,
-            scatter,
-            length_mm,
-            ..
-        } = rest;
+        let FilmRest { coefficients, scatter, length_mm, .. } = rest;
         let found = CommonTaper::new(&bent, coefficients, scatter, *length_mm, self.cancel);
         match found.filter(|taper| taper.deviation <= UNKNOWN_TAPER) {
             Some(found) => (found.taper, found.note(bent.len())),
@@ -243,9 +228,7 @@ impl Film<'_> {
         let within = self.within_mm / whisker.length_mm;
         let frame = frame.ok_or(NoFrame::Missing)?;
         let at_rest = |bent: Option<FrameFit>| {
-            let fit = frame
-                .at_rest(whisker, self.cancel)
-                .ok_or(NoFrame::NoCurve)?;
+            let fit = frame.at_rest(whisker, self.cancel).ok_or(NoFrame::NoCurve)?;
             Ok(RodFit { fit, bent })
         };
         if !self.is_near(whisker, frame) {
@@ -253,10 +236,7 @@ impl Film<'_> {
         }
         let bent = frame.bent(whisker, self.cancel).ok_or(NoFrame::NoCurve)?;
         match bent.offset {
-            Some(offset) if offset.abs() <= within => Ok(RodFit {
-                fit: bent,
-                bent: None,
-            }),
+            Some(offset) if offset.abs() <= within => Ok(RodFit { fit: bent, bent: None }),
             _ => at_rest(Some(bent)),
         }
     }
@@ -270,10 +250,8 @@ impl Film<'_> {
         rest_rms: f64,
         warnings: &mut Vec<String>,
     ) -> Vec<Result<FrameFit, NoFrame>> {
-        let found: Vec<Result<RodFit, NoFrame>> = frames
-            .par_iter()
-            .map(|frame| self.fit(whisker, frame.as_ref()))
-            .collect();
+        let found: Vec<Result<RodFit, NoFrame>> =
+            frames.par_iter().map(|frame| self.fit(whisker, frame.as_ref())).collect();
         let held = || found.iter().flatten().filter(|found| found.is_held());
         let held_rms = median(held().map(|found| found.fit.rms()));
         let limit = |rms: f64| (OUTLYING * rms.max(FAINT)).min(LARGEST_RMS);
@@ -403,10 +381,7 @@ fn most_bent<'a>(
     within: f64,
     cancel: &AtomicBool,
 ) -> Vec<&'a RodFrame> {
-    let near = frames
-        .iter()
-        .flatten()
-        .filter(|frame| frame.far <= within + BESIDE);
+    let near = frames.iter().flatten().filter(|frame| frame.far <= within + BESIDE);
     let near = evenly(&near.collect::<Vec<_>>(), CANDIDATES * SAMPLE);
     let moment = |frame: &&'a RodFrame| {
         let found = frame.bent(whisker, cancel)?;

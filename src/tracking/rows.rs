@@ -192,9 +192,7 @@ fn zero(
 ) -> Result<f64, TrackingError> {
     if let Some(time_s) = options.zero_s {
         let near = rows.iter().min_by(|one, other| {
-            (one.time_s - time_s)
-                .abs()
-                .total_cmp(&(other.time_s - time_s).abs())
+            (one.time_s - time_s).abs().total_cmp(&(other.time_s - time_s).abs())
         });
         let near = near.filter(|row| (row.time_s - time_s).abs() <= 0.5001 / options.fps);
         return near.and_then(|row| row.angle_deg).ok_or_else(|| {
@@ -218,16 +216,10 @@ fn zero(
     let is_cb = |pair: &&[TrackedFrame]| pair[1].angle_deg > pair[0].angle_deg;
     let (row, what) = match touches().find(is_cb).or_else(|| touches().next()) {
         Some(pair) => (Some(&pair[1]), "first touch"),
-        None => (
-            rows.iter().find(|row| row.angle_deg.is_some()),
-            "the first frame with a whisker",
-        ),
+        None => (rows.iter().find(|row| row.angle_deg.is_some()), "the first frame with a whisker"),
     };
     if let Some(row) = row {
-        notes.push(format!(
-            "angles of the base are 0 in frame {}, {what}",
-            row.frame
-        ));
+        notes.push(format!("angles of the base are 0 in frame {}, {what}", row.frame));
     }
     Ok(row.and_then(|row| row.angle_deg).unwrap_or_default())
 }

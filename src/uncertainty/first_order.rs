@@ -16,15 +16,9 @@ pub(super) fn deviations_deg(
     resolution: Resolution,
     side: Side,
 ) -> Vec<Option<f64>> {
-    let parts: Vec<Vec<(Variable, f64)>> = varying
-        .iter()
-        .map(|one| one.variables(scene, varying))
-        .collect();
-    let all: Vec<Variable> = parts
-        .iter()
-        .flatten()
-        .map(|(variable, _)| *variable)
-        .collect();
+    let parts: Vec<Vec<(Variable, f64)>> =
+        varying.iter().map(|one| one.variables(scene, varying)).collect();
+    let all: Vec<Variable> = parts.iter().flatten().map(|(variable, _)| *variable).collect();
     let variables = each_once(&all);
     let pushed = PushedWhisker {
         whisker: &scene.whisker,

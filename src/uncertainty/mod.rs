@@ -97,12 +97,7 @@ impl Draws {
             .into_par_iter()
             .map(|sample| draw(scene, &varying, RandomStream::new(seed, sample)));
         let (drawn, refused): (Vec<_>, Vec<u64>) = draws.collect::<Result<_, _>>()?;
-        Ok(Self {
-            scene: scene.clone(),
-            varying,
-            drawn,
-            refused: refused.into_iter().sum(),
-        })
+        Ok(Self { scene: scene.clone(), varying, drawn, refused: refused.into_iter().sum() })
     }
 
     /// Returns the number of whiskers that were drawn at random.
@@ -135,12 +130,7 @@ impl Draws {
                 distances_mm: distances,
             });
             let keep = |_, end, _| PushEnd::new(&end);
-            detachments(
-                resolution,
-                &pushed.collect::<Vec<_>>(),
-                EndDetail::State,
-                keep,
-            )
+            detachments(resolution, &pushed.collect::<Vec<_>>(), EndDetail::State, keep)
         };
         let of_drawn = |drawn: &[(Whisker, Pole)]| {
             let ends = curves(drawn);
@@ -152,11 +142,7 @@ impl Draws {
         let ends: Vec<Vec<PushEnd>> = drawn.collect();
         let scene_ends = curves(&[(self.scene.whisker.clone(), self.scene.pole)]).concat();
         let first_order = first_order::deviations_deg(&self.scene, &self.varying, resolution, side);
-        let rows = distances
-            .iter()
-            .zip(scene_ends)
-            .zip(first_order)
-            .enumerate();
+        let rows = distances.iter().zip(scene_ends).zip(first_order).enumerate();
         rows.map(|(row, ((distance_mm, scene_end), first_order_deg))| {
             let ends = ends.iter().map(|ends| ends[row]);
             EndSpread::new(side, *distance_mm, scene_end, ends, first_order_deg)
@@ -210,10 +196,7 @@ struct PushEnd {
 impl PushEnd {
     fn new(end: &Detachment) -> Self {
         let loads = || Some([end.push_angle_deg?, end.force_un?, end.base_moment_nnm?]);
-        Self {
-            kind: end.kind,
-            loads: loads(),
-        }
+        Self { kind: end.kind, loads: loads() }
     }
 }
 

@@ -172,13 +172,7 @@ impl EndSpread {
         }
         .of_samples(samples);
         let [slip_off, pull_off, out_of_reach, unresolved] = counts;
-        Self {
-            slip_off,
-            pull_off,
-            out_of_reach,
-            unresolved,
-            ..spread
-        }
+        Self { slip_off, pull_off, out_of_reach, unresolved, ..spread }
     }
 }
 
@@ -212,12 +206,7 @@ mod tests {
         ]
         .map(|(kind, loads)| PushEnd { kind, loads });
         let spread = EndSpread::new(Side::Cb, 10.0, ends[0], ends.into_iter(), None);
-        let counts = [
-            spread.slip_off,
-            spread.pull_off,
-            spread.out_of_reach,
-            spread.unresolved,
-        ];
+        let counts = [spread.slip_off, spread.pull_off, spread.out_of_reach, spread.unresolved];
         assert_eq!(counts, [2, 1, 1, 1]);
         assert_eq!((spread.mean_deg, spread.sd_deg), (Some(3.0), Some(2.0)));
         let forces = (spread.force_mean_un, spread.force_p50_un);

@@ -23,16 +23,13 @@ enum VaryingSource {
 
 /// Returns the numbers of `scene` whose `deviations` are not 0, `[number]`.
 pub(super) fn varying(scene: &Scene, deviations: &Deviations) -> Vec<Varying> {
-    let parameters = deviations
-        .parameters
-        .iter()
-        .filter_map(|&(parameter, deviation)| {
-            Some(Varying {
-                source: VaryingSource::Parameter(parameter),
-                value: parameter.value(scene)?,
-                deviation,
-            })
-        });
+    let parameters = deviations.parameters.iter().filter_map(|&(parameter, deviation)| {
+        Some(Varying {
+            source: VaryingSource::Parameter(parameter),
+            value: parameter.value(scene)?,
+            deviation,
+        })
+    });
     let rows = deviations.profile_radius_um.map(|deviation| {
         let rows = rows(scene).into_iter().enumerate();
         rows.map(move |(row, [_, value])| Varying {
@@ -66,14 +63,9 @@ impl Varying {
         let rows = rows(scene);
         let changes = match scene.smooth_radii() {
             Some(smooth) => smooth.by_measured(row),
-            None => (0..rows.len())
-                .map(|other| f64::from(u8::from(other == row)))
-                .collect(),
+            None => (0..rows.len()).map(|other| f64::from(u8::from(other == row))).collect(),
         };
-        let changed = changes
-            .iter()
-            .enumerate()
-            .filter(|(_, change)| **change != 0.0);
+        let changed = changes.iter().enumerate().filter(|(_, change)| **change != 0.0);
         let mut variables: Vec<(Variable, f64)> = changed
             .map(|(changed_row, change)| (Variable::ProfileRadiusUm(changed_row), *change))
             .collect();
@@ -105,10 +97,7 @@ pub(super) fn moved(scene: &Scene, steps: &[(Varying, f64)]) -> Result<Scene, Sc
             VaryingSource::Row(row) => rows[row][1] = value + step,
         }
     }
-    if steps
-        .iter()
-        .any(|(one, _)| matches!(one.source, VaryingSource::Row(_)))
-    {
+    if steps.iter().any(|(one, _)| matches!(one.source, VaryingSource::Row(_))) {
         builder = builder.profile(rows);
     }
     builder.build()

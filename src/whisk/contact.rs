@@ -18,12 +18,7 @@ pub struct ContactTracker<'a> {
 impl<'a> ContactTracker<'a> {
     /// Creates the contacts of a course that begins without contact.
     pub const fn new(sides: &'a BothSides) -> Self {
-        Self {
-            sides,
-            open: None,
-            ended: 0.0,
-            is_lost: false,
-        }
+        Self { sides, open: None, ended: 0.0, is_lost: false }
     }
 
     /// Forgets the contact after a gap in the course. The energy dissipated so far is no longer known.
@@ -77,9 +72,7 @@ impl<'a> ContactTracker<'a> {
         let lost = course.lost_at.filter(|_| !self.is_lost);
         self.is_lost |= lost.is_some();
         let changes = snaps.chain(lost.map(|push| (push, None)));
-        changes
-            .map(|(push, phase)| pushed(*side, push, phase))
-            .collect()
+        changes.map(|(push, phase)| pushed(*side, push, phase)).collect()
     }
 
     /// Ends the contact after its last move. At a release no unstable states may be left ahead; a detachment needs a contact that slides
@@ -104,10 +97,5 @@ impl<'a> ContactTracker<'a> {
 
 /// Returns the contact with the single pole of a course after a `push`, a magnitude in radians.
 pub const fn pushed(side: Side, push: f64, phase: Option<ContactPhase>) -> PushedContact {
-    PushedContact {
-        side,
-        row: 0,
-        push,
-        phase,
-    }
+    PushedContact { side, row: 0, push, phase }
 }

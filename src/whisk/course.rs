@@ -88,9 +88,8 @@ impl AngleCourse {
         if times < 2 || times != angles {
             return Err(CourseError::Count { times, angles });
         }
-        if let Some(index) = times_s
-            .iter()
-            .position(|time| !(-MOST_SECONDS..=MOST_SECONDS).contains(time))
+        if let Some(index) =
+            times_s.iter().position(|time| !(-MOST_SECONDS..=MOST_SECONDS).contains(time))
         {
             let time_s = times_s[index];
             return Err(CourseError::TimeRange { index, time_s });
@@ -107,17 +106,9 @@ impl AngleCourse {
         if let Some(before) = times_s.windows(2).position(|pair| pair[1] <= pair[0]) {
             let [before_s, time_s] = [times_s[before], times_s[before + 1]];
             let index = before + 1;
-            return Err(CourseError::Time {
-                index,
-                time_s,
-                before_s,
-            });
+            return Err(CourseError::Time { index, time_s, before_s });
         }
-        Ok(Self {
-            times_s,
-            angles_deg,
-            note: None,
-        })
+        Ok(Self { times_s, angles_deg, note: None })
     }
 
     /// Creates the course `amplitude sin(2 pi frequency t)` from 0 s on for `seconds`, with `rate` samples per second.
@@ -135,10 +126,7 @@ impl AngleCourse {
             return Err(CourseError::Samples(intervals + 1.0));
         }
         if frequency_hz > 0.5 * rate_hz {
-            return Err(CourseError::Frequency {
-                frequency_hz,
-                rate_hz,
-            });
+            return Err(CourseError::Frequency { frequency_hz, rate_hz });
         }
         let times: Vec<f64> = (0..=intervals as u64).map(|i| i as f64 / rate_hz).collect();
         let angle = |time: &f64| amplitude_deg * libm::sin(TAU * frequency_hz * time);

@@ -56,11 +56,7 @@ struct Leg {
 impl Leg {
     fn time(&self, angle: f64) -> f64 {
         let [from, to] = self.angles;
-        let part = if to == from {
-            1.0
-        } else {
-            (angle - from) / (to - from)
-        };
+        let part = if to == from { 1.0 } else { (angle - from) / (to - from) };
         (self.times[1] - self.times[0]).mul_add(part, self.times[0])
     }
 }
@@ -87,10 +83,7 @@ impl<'a> Legs<'a> {
             let push = self.turns.push(side, obstacle, angle).max(0.0);
             self.contacts.touch(side, push);
         }
-        self.end(Leg {
-            angles: [angle; 2],
-            times: [time_s; 2],
-        });
+        self.end(Leg { angles: [angle; 2], times: [time_s; 2] });
     }
 
     /// Continues the course after a gap, or begins it there, at the `angle` of the base, in radians, and the time in s. From here on, all phases
@@ -100,10 +93,7 @@ impl<'a> Legs<'a> {
         self.contacts.forget();
         self.heading = 0.0;
         self.decide();
-        self.end(Leg {
-            angles: [angle; 2],
-            times: [time_s; 2],
-        });
+        self.end(Leg { angles: [angle; 2], times: [time_s; 2] });
     }
 
     /// Ends the search for the phase after a gap, if the whisker is free in all phases in which it can be. A contact with friction has a
@@ -133,8 +123,7 @@ impl<'a> Legs<'a> {
             self.head(from, to - from);
         }
         let mut passages = Vec::new();
-        self.turns
-            .pass(&mut self.phase, from, to, |passage| passages.push(passage));
+        self.turns.pass(&mut self.phase, from, to, |passage| passages.push(passage));
         for passage in passages {
             self.pass(&leg, passage);
         }
@@ -166,13 +155,7 @@ impl<'a> Legs<'a> {
     }
 
     fn pass(&mut self, leg: &Leg, passage: Passage) {
-        let Passage {
-            angle,
-            event,
-            side,
-            obstacle,
-            push,
-        } = passage;
+        let Passage { angle, event, side, obstacle, push } = passage;
         if self.contacts.is_lost {
             return;
         }
@@ -200,9 +183,7 @@ impl<'a> Legs<'a> {
     /// Adds the `changes` of the contact with an obstacle.
     fn change(&mut self, leg: &Leg, obstacle: i32, changes: Vec<PushedContact>) {
         for contact in changes {
-            let PushedContact {
-                side, push, phase, ..
-            } = contact;
+            let PushedContact { side, push, phase, .. } = contact;
             let angle = self.turns.touch(side, obstacle) + side.sign() * push;
             let kind = match phase {
                 Some(_) => WhiskEventKind::Snap,

@@ -64,14 +64,9 @@ impl Whisk {
                 digits(angle_deg)
             )
         });
-        let spans = self
-            .events
-            .iter()
-            .filter(|event| event.event == WhiskEventKind::Undecided);
-        let undecided = self
-            .samples
-            .iter()
-            .filter(|sample| sample.regime == WhiskRegime::Undecided);
+        let spans = self.events.iter().filter(|event| event.event == WhiskEventKind::Undecided);
+        let undecided =
+            self.samples.iter().filter(|sample| sample.regime == WhiskRegime::Undecided);
         let (spans, undecided) = (spans.count(), undecided.count());
         let without = (undecided > 0 || spans > 0).then(|| {
             let all = self.samples.len();
@@ -110,9 +105,7 @@ impl Whisk {
                 let simultaneous = next.filter(|next| next.angle_deg == event.angle_deg);
                 let after = match simultaneous {
                     None => Some(0.0),
-                    Some(next) => next
-                        .energy_nj
-                        .filter(|_| next.event == WhiskEventKind::Touch),
+                    Some(next) => next.energy_nj.filter(|_| next.event == WhiskEventKind::Touch),
                 };
                 lost += event.energy_nj.unwrap_or(f64::NAN) - after.unwrap_or(f64::NAN);
             }
@@ -258,10 +251,7 @@ impl<'a> Front<'a> {
         };
         Ok(Self {
             whisker,
-            sides: BothSides {
-                cb: Some(cb_states),
-                cf: cf_states,
-            },
+            sides: BothSides { cb: Some(cb_states), cf: cf_states },
             turns,
             pole_mm: DVec2::from_angle(cb.touch) * (cb.pole_distance * length_mm),
         })
@@ -282,10 +272,7 @@ impl<'a> Front<'a> {
             true => legs.resume(angle, time_s),
             false => legs.first(begin(&self.turns, first, options.start)?, angle, time_s),
         }
-        let is_open = |end: usize| {
-            gaps.iter()
-                .any(|gap| !gap.is_bridged && gap.end == Some(end))
-        };
+        let is_open = |end: usize| gaps.iter().any(|gap| !gap.is_bridged && gap.end == Some(end));
         for pair in known.windows(2) {
             if options.is_cancelled() {
                 return Err(WhiskError::Cancelled);
@@ -342,9 +329,7 @@ fn begin(turns: &Turns, first_deg: f64, start: Option<CourseStart>) -> Result<Ph
         Some(CourseStart::Contact) => turns.held(first).next().ok_or_else(|| WhiskError::NotHeld {
             angle_deg: first_deg,
             cb_end_deg: turns.cb_end.push.to_degrees(),
-            cf_end_deg: turns
-                .cf_end
-                .map(|end| (turns.cf_touch - end.push).to_degrees()),
+            cf_end_deg: turns.cf_end.map(|end| (turns.cf_touch - end.push).to_degrees()),
         }),
         _ => turns.begin(first).ok_or(WhiskError::Begin {
             angle_deg: first_deg,

@@ -71,9 +71,6 @@ impl CurvaturePoint {
             return Err(CurvatureAtError { at_mm, length_mm });
         }
         let rest = Rest::new(&whisker.rod(&Pole::smooth(0.0), Side::Cb));
-        Ok(Some(Self {
-            at_mm,
-            at_rest_per_mm: rest.curvature(at_mm / length_mm) / length_mm,
-        }))
+        Ok(Some(Self { at_mm, at_rest_per_mm: rest.curvature(at_mm / length_mm) / length_mm }))
     }
 }

@@ -116,13 +116,7 @@ pub trait Obstacles {
                     Some(end) if side == ahead(grows) => (end.kind, end.push),
                     _ => (WhiskEventKind::Release, push),
                 };
-                Some(Passage {
-                    angle,
-                    event,
-                    side,
-                    obstacle,
-                    push,
-                })
+                Some(Passage { angle, event, side, obstacle, push })
             }
             _ => None,
         }
@@ -136,17 +130,11 @@ pub trait Obstacles {
                 let obstacle = after + i32::from(grows);
                 let next = match self.end(side, obstacle) {
                     Some(_) => Phase::Contact { side, obstacle },
-                    None => Phase::Undecided {
-                        obstacle,
-                        reason: Undecided::TipEdge,
-                    },
+                    None => Phase::Undecided { obstacle, reason: Undecided::TipEdge },
                 };
                 (self.touch(side, obstacle), next)
             }
-            Phase::Contact {
-                side: held,
-                obstacle,
-            } if held == side => {
+            Phase::Contact { side: held, obstacle } if held == side => {
                 let end = self.end(side, obstacle).map_or(0.0, |end| end.push);
                 let angle = self.touch(side, obstacle) + side.sign() * end;
                 (angle, self.after_detachment(obstacle, angle, grows))
@@ -181,14 +169,8 @@ pub trait Obstacles {
             return rest(passed, grows);
         }
         match holds(side, passed) {
-            true => Phase::Contact {
-                side,
-                obstacle: passed,
-            },
-            false => Phase::Undecided {
-                obstacle: passed,
-                reason: Undecided::OnThePole,
-            },
+            true => Phase::Contact { side, obstacle: passed },
+            false => Phase::Undecided { obstacle: passed, reason: Undecided::OnThePole },
         }
     }
 }

@@ -19,13 +19,10 @@ impl WhiskSample {
         angle_deg: f64,
         (centre_mm, radius_mm): (DVec2, f64),
     ) -> Self {
-        let contact = self
-            .side
-            .zip(self.contact_angle_deg)
-            .map(|(side, contact_deg)| {
-                let tangent = DVec2::from_angle((contact_deg - angle_deg).to_radians());
-                centre_mm + side.sign() * radius_mm * tangent.perp()
-            });
+        let contact = self.side.zip(self.contact_angle_deg).map(|(side, contact_deg)| {
+            let tangent = DVec2::from_angle((contact_deg - angle_deg).to_radians());
+            centre_mm + side.sign() * radius_mm * tangent.perp()
+        });
         Self {
             time_s,
             angle_deg: Some(angle_deg),
@@ -61,19 +58,15 @@ impl BothSides {
                     Some(states.curvature_per_mm(&state?, point.at_mm))
                 }
             });
-            WhiskSample {
-                curvature_per_mm: curvature,
-                ..sample(leg_sample, state, unit_nj)
-            }
+            WhiskSample { curvature_per_mm: curvature, ..sample(leg_sample, state, unit_nj) }
         };
         samples.map(with_curvature).collect()
     }
 
     /// Returns the events of a course with their states: `[event]`.
     pub fn events(&self, events: &[LegEvent]) -> Vec<WhiskEvent> {
-        let contacts = events
-            .iter()
-            .map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
+        let contacts =
+            events.iter().map(|event| Some(event.contact).filter(|contact| !contact.push.is_nan()));
         // A snap begins at a limit, where rounding may hide that the contact still sticks.
         let readings = self.at(&contacts.collect::<Vec<_>>(), held);
         let events = events.iter().zip(readings).map(|(event, reading)| {
@@ -99,14 +92,8 @@ impl BothSides {
 
 /// Returns a sample without a state, whose angle is missing for this `reason`.
 pub fn missing(time_s: f64, reason: Undecided) -> WhiskSample {
-    let undecided = LegSample {
-        held: Err(reason),
-        dissipated: f64::NAN,
-    };
-    WhiskSample {
-        time_s,
-        ..sample(&undecided, None, f64::NAN)
-    }
+    let undecided = LegSample { held: Err(reason), dissipated: f64::NAN };
+    WhiskSample { time_s, ..sample(&undecided, None, f64::NAN) }
 }
 
 /// Returns a sample without time and angle. `unit` is the unit of energies, in nJ.

@@ -82,10 +82,7 @@ impl CourseShapes {
                     Some(Side::Cf) => -self.cf_touch_deg,
                     _ => 0.0,
                 };
-                (
-                    points.map(|point| [point.x_mm, point.y_mm]).collect(),
-                    turn_deg,
-                )
+                (points.map(|point| [point.x_mm, point.y_mm]).collect(), turn_deg)
             }
             None => {
                 let angle_deg = sample.angle_deg.unwrap_or(f64::NAN);

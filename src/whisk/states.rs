@@ -53,12 +53,7 @@ pub struct CourseState {
 impl CourseState {
     /// Creates a state without friction, or without a load.
     fn smooth(reading: Reading, point: DVec2) -> Self {
-        Self {
-            reading,
-            sliding: None,
-            point,
-            ratio: 0.0,
-        }
+        Self { reading, sliding: None, point, ratio: 0.0 }
     }
 }
 
@@ -90,11 +85,7 @@ impl SideStates {
         };
         let limits: Vec<CourseLimits> = match rod.friction {
             0.0 => Vec::new(),
-            _ => ends
-                .iter()
-                .enumerate()
-                .map(limits_of)
-                .collect::<Result<_, _>>()?,
+            _ => ends.iter().enumerate().map(limits_of).collect::<Result<_, _>>()?,
         };
         Ok(Self {
             ends,
@@ -131,9 +122,7 @@ impl SideStates {
         let rod = self.sheet.rod.with_friction(state.ratio);
         let (tau, load) = state.point.into();
         let points = profile(&rod, tau, load, Resolution::FINE, &[at_mm / length]);
-        points
-            .first()
-            .map_or(f64::NAN, |point| point.curvature / length)
+        points.first().map_or(f64::NAN, |point| point.curvature / length)
     }
 
     /// Returns the states of `contacts`, `[contact]`; `None` where no state is found. States with friction are solved by `solve`.
@@ -186,10 +175,7 @@ impl SideStates {
         let end = &self.ends[row];
         let reading = end.reading(&self.reader, &self.sheet, row);
         let point = DVec2::new(end.crossing.tau, end.crossing.load);
-        CourseState {
-            ratio: self.sheet.rod.friction,
-            ..CourseState::smooth(reading, point)
-        }
+        CourseState { ratio: self.sheet.rod.friction, ..CourseState::smooth(reading, point) }
     }
 
     fn at_touch(&self, row: usize) -> CourseState {

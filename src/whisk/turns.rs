@@ -80,11 +80,8 @@ mod tests {
     use super::*;
     use crate::whisk::WhiskEventKind;
 
-    const TURNS: Turns = Turns {
-        cf_touch: 0.1,
-        cb_end: slip_off(0.5),
-        cf_end: Some(slip_off(0.7)),
-    };
+    const TURNS: Turns =
+        Turns { cf_touch: 0.1, cb_end: slip_off(0.5), cf_end: Some(slip_off(0.7)) };
 
     const fn slip_off(push: f64) -> ContactEnd {
         let kind = WhiskEventKind::SlipOff;
@@ -117,11 +114,7 @@ mod tests {
         assert_eq!(found, wanted);
         // A push that turns back is released where it began.
         let found = events(&TURNS, &[0.0, 0.4, -0.2, 0.5]);
-        let wanted = [
-            (Touch, Side::Cb, 0.0),
-            (Release, Side::Cb, 0.0),
-            (Touch, Side::Cb, 0.0),
-        ];
+        let wanted = [(Touch, Side::Cb, 0.0), (Release, Side::Cb, 0.0), (Touch, Side::Cb, 0.0)];
         assert_eq!(found, wanted);
     }
 
@@ -139,10 +132,7 @@ mod tests {
         assert_eq!(TURNS.begin(0.0), Some(Phase::Free { after: -1 }));
         assert_eq!(TURNS.begin(0.1), Some(Phase::Free { after: 0 }));
         // In front of a point both touches are at the same angle, and a push to CB comes first.
-        let point = Turns {
-            cf_touch: 0.0,
-            ..TURNS
-        };
+        let point = Turns { cf_touch: 0.0, ..TURNS };
         assert_eq!(point.begin(0.0), Some(Phase::Free { after: -1 }));
         assert_eq!(point.begin(0.1), Some(Phase::Free { after: 0 }));
     }
@@ -150,49 +140,27 @@ mod tests {
     /// Before a thick pole, a short push ends where the resting whisker would cross the pole.
     #[test]
     fn a_whisker_on_the_pole_is_undecided() {
-        let thick = Turns {
-            cf_touch: 0.4,
-            cb_end: slip_off(0.2),
-            cf_end: Some(slip_off(0.1)),
-        };
+        let thick = Turns { cf_touch: 0.4, cb_end: slip_off(0.2), cf_end: Some(slip_off(0.1)) };
         let mut phase = Phase::Free { after: -1 };
         let mut last = None;
         thick.pass(&mut phase, -0.1, 0.35, |passage| last = Some(passage.event));
         assert_eq!(last, Some(WhiskEventKind::Undecided));
         let reason = Undecided::OnThePole;
-        assert_eq!(
-            phase,
-            Phase::Undecided {
-                obstacle: 0,
-                reason
-            }
-        );
+        assert_eq!(phase, Phase::Undecided { obstacle: 0, reason });
         thick.pass(&mut phase, 0.35, 0.45, |_| {});
         assert_eq!(phase, Phase::Free { after: 0 });
         // A side that holds the whisker takes it over.
-        let held = Turns {
-            cf_end: Some(slip_off(0.3)),
-            ..thick
-        };
+        let held = Turns { cf_end: Some(slip_off(0.3)), ..thick };
         let mut phase = Phase::Free { after: -1 };
         held.pass(&mut phase, -0.1, 0.35, |_| {});
         let side = Side::Cf;
         assert_eq!(phase, Phase::Contact { side, obstacle: 0 });
         // Without a touch on CF, the tip's edge meets the pole.
-        let short = Turns {
-            cf_end: None,
-            ..thick
-        };
+        let short = Turns { cf_end: None, ..thick };
         let mut phase = Phase::Free { after: 0 };
         short.pass(&mut phase, 0.5, 0.3, |_| {});
         let reason = Undecided::TipEdge;
-        assert_eq!(
-            phase,
-            Phase::Undecided {
-                obstacle: 0,
-                reason
-            }
-        );
+        assert_eq!(phase, Phase::Undecided { obstacle: 0, reason });
     }
 
     #[test]
@@ -209,10 +177,7 @@ mod tests {
         ] {
             assert_eq!(TURNS.held(angle).next(), wanted, "{angle}");
         }
-        let short = Turns {
-            cf_end: None,
-            ..TURNS
-        };
+        let short = Turns { cf_end: None, ..TURNS };
         assert_eq!(short.held(-0.3).next(), None);
     }
 
@@ -222,10 +187,7 @@ mod tests {
         let (before, past) = (Phase::Free { after: -1 }, Phase::Free { after: 0 });
         let [cb, cf] = [Side::Cb, Side::Cf].map(|side| Phase::Contact { side, obstacle: 0 });
         let reason = Undecided::OnThePole;
-        let on_the_pole = Phase::Undecided {
-            obstacle: 0,
-            reason,
-        };
+        let on_the_pole = Phase::Undecided { obstacle: 0, reason };
         for (angle, wanted) in [
             (-0.65, vec![before]),
             (-0.3, vec![before, cf]),

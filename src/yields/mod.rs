@@ -88,14 +88,10 @@ impl StrainMark {
     pub fn of_rows(whisker: &Whisker, pole: &Pole, rows: &[impl StateRow]) -> Option<Vec<Self>> {
         whisker.yield_strain?;
         let contacts: Vec<ContactColumns> = rows.iter().map(StateRow::contact).collect();
-        let loaded = contacts
-            .iter()
-            .map(|contact| condition(whisker, pole, contact));
+        let loaded = contacts.iter().map(|contact| condition(whisker, pole, contact));
         let loaded: Vec<Option<(Rod, DVec2)>> = loaded.collect();
-        let conditions = loaded
-            .iter()
-            .flatten()
-            .map(|(rod, point)| InitialCondition::new(rod, *point));
+        let conditions =
+            loaded.iter().flatten().map(|(rod, point)| InitialCondition::new(rod, *point));
         let conditions: Vec<InitialCondition> = conditions.collect();
         let peaks: Vec<PeakStrain> = Batch::new(Method::fine().doubled()).shoot(&conditions);
         let mut peaks = peaks.into_iter();
@@ -106,10 +102,7 @@ impl StrainMark {
                 Some(_) => peaks.next().map(|peak| peak.strain * unit),
                 None => is_free.then_some(0.0),
             };
-            Self {
-                peak_strain,
-                yields: peak_strain.and_then(|strain| whisker.yields(strain)),
-            }
+            Self { peak_strain, yields: peak_strain.and_then(|strain| whisker.yields(strain)) }
         });
         Some(marks.collect())
     }
@@ -124,9 +117,7 @@ impl PushMark {
         ends: impl Iterator<Item = &'a Detachment>,
     ) -> Vec<Option<Self>> {
         let ends: Vec<&Detachment> = ends.collect();
-        let marks = ends
-            .into_par_iter()
-            .map(|end| Self::of_end(whisker, pole, end));
+        let marks = ends.into_par_iter().map(|end| Self::of_end(whisker, pole, end));
         marks.collect()
     }
 
@@ -178,9 +169,6 @@ impl PushMark {
             .and_then(|distance_mm| StableBranch::new(whisker, pole, side, distance_mm).ok());
         let strain = branch.map(|branch| branch.peak(PushLoad::Strain).size);
         let max_strain = strain.filter(|strain| strain.is_finite());
-        Some(Self {
-            max_strain,
-            yields: max_strain.and_then(|strain| whisker.yields(strain)),
-        })
+        Some(Self { max_strain, yields: max_strain.and_then(|strain| whisker.yields(strain)) })
     }
 }

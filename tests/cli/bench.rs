@@ -46,10 +46,7 @@ fn errors_fall_from_rung_to_rung() {
             errors[..falling].is_sorted_by(|a, b| a > b || is_spectral && a == b),
             "{engine}: {errors:?}"
         );
-        assert!(
-            errors[0] > 1e3 * errors[rungs - 1] || rungs == 1,
-            "{engine}: {errors:?}"
-        );
+        assert!(errors[0] > 1e3 * errors[rungs - 1] || rungs == 1, "{engine}: {errors:?}");
         assert!(errors[rungs - 1] < exact, "{engine}: {errors:?}");
         let keys = match is_cpu {
             true => &["/us_per_state", "/trajectories_per_s"][..],
@@ -68,19 +65,15 @@ fn errors_fall_from_rung_to_rung() {
         .map(|((time, error), row)| (time, error, row["pareto"].as_bool().unwrap()))
         .collect();
     for (time, error, pareto) in &places {
-        let is_beaten = places
-            .iter()
-            .any(|(t, e, _)| t <= time && e <= error && (t, e) != (time, error));
+        let is_beaten =
+            places.iter().any(|(t, e, _)| t <= time && e <= error && (t, e) != (time, error));
         assert_eq!(*pareto, !is_beaten);
     }
     let ends = report["detachments"].as_array().unwrap();
     let errors = numbers(ends, "/angle_deg/worst");
     // The few trajectories of a sheet share blocks, so two coarse rungs can take the same steps.
     assert!(errors[..6].is_sorted_by(|a, b| a >= b), "{errors:?}");
-    assert!(
-        errors[..6].windows(3).all(|few| few[0] > few[2]),
-        "{errors:?}"
-    );
+    assert!(errors[..6].windows(3).all(|few| few[0] > few[2]), "{errors:?}");
     assert!(errors[0] > 1e4 * errors[5], "{errors:?}");
     let maps = report["maps"].as_array().unwrap();
     for timed in rows.iter().chain(ends).chain(maps) {
@@ -93,11 +86,7 @@ fn errors_fall_from_rung_to_rung() {
     assert_eq!(maps.len(), 2 + gpus);
     let trajectories = report["trajectories"].as_array().unwrap();
     assert_eq!(trajectories.len(), 1 + gpus);
-    assert!(
-        numbers(trajectories, "/per_s")
-            .iter()
-            .all(|rate| *rate > 0.0)
-    );
+    assert!(numbers(trajectories, "/per_s").iter().all(|rate| *rate > 0.0));
     for row in trajectories {
         let most = match row["engine"].as_str().unwrap() {
             engine if engine.ends_with("f32") => 2e-5,
@@ -116,19 +105,11 @@ fn expansions_hang_together(report: &Value) {
     assert_eq!(all.len(), 5);
     let states = numbers(all, "/states");
     // A small bound leaves only rows with few states.
-    assert!(
-        states[..4].is_sorted() && states[0] < states[3],
-        "{states:?}"
-    );
+    assert!(states[..4].is_sorted() && states[0] < states[3], "{states:?}");
     let certified = numbers(all, "/certified");
-    assert!(
-        certified.iter().all(|part| (0.3..=1.0).contains(part)),
-        "{certified:?}"
-    );
+    assert!(certified.iter().all(|part| (0.3..=1.0).contains(part)), "{certified:?}");
     let rows = report["rows"].as_array().unwrap();
-    let rows = rows
-        .iter()
-        .filter(|row| row["engine"] == "spectral" && row["threads"] == 1);
+    let rows = rows.iter().filter(|row| row["engine"] == "spectral" && row["threads"] == 1);
     for (engine, row) in all.iter().zip(rows) {
         assert_eq!(engine["us_per_state"], row["us_per_state"]);
         let number = |key: &str| engine[key].as_f64();
@@ -136,12 +117,7 @@ fn expansions_hang_together(report: &Value) {
         let from = (saved > 0.0).then(|| 1e3 * number("ms_per_side").unwrap() / saved);
         let found = number("pays_from");
         assert_eq!(found.is_some(), from.is_some(), "{engine}");
-        assert!(
-            found
-                .zip(from)
-                .is_none_or(|(a, b)| (a - b).abs() < 1e-9 * b),
-            "{engine}"
-        );
+        assert!(found.zip(from).is_none_or(|(a, b)| (a - b).abs() < 1e-9 * b), "{engine}");
     }
 }
 
@@ -207,12 +183,7 @@ fn tables_fit_a_terminal_and_pictures_are_drawn() {
     assert!(picture.contains("What accuracy costs"));
     // Axis labels are numbers, not logarithms.
     assert!(picture.contains(">1e\u{2212}"), "{picture}");
-    for text in [
-        "time per state (\u{b5}s)",
-        "heyoka",
-        "AUTO-07p",
-        "solve_bvp",
-    ] {
+    for text in ["time per state (\u{b5}s)", "heyoka", "AUTO-07p", "solve_bvp"] {
         assert!(picture.contains(&format!(">{text}<")), "{text}");
     }
 }
@@ -242,18 +213,9 @@ fn a_wrong_file_of_peers_is_refused_before_any_work() {
         ("{", "must be as benches/peers/run.sh writes it: EOF"),
         (r#"{"heyoka": []}"#, "missing field `machine`"),
         (r#"{"machine": "M", "auto": null}"#, "has no program"),
-        (
-            &row(r#"{"microseconds": 0, "error_max": 1}"#),
-            "heyoka, row 1: microseconds is 0",
-        ),
-        (
-            &row(r#"{"microseconds": 1, "error_max": -1}"#),
-            "heyoka, row 1: error_max is -1",
-        ),
-        (
-            &row(r#"{"microseconds": 1, "error_max": 1e999}"#),
-            "number out of range",
-        ),
+        (&row(r#"{"microseconds": 0, "error_max": 1}"#), "heyoka, row 1: microseconds is 0"),
+        (&row(r#"{"microseconds": 1, "error_max": -1}"#), "heyoka, row 1: error_max is -1"),
+        (&row(r#"{"microseconds": 1, "error_max": 1e999}"#), "number out of range"),
         (&" ".repeat((1 << 20) + 1), "longer than 1 MiB"),
     ] {
         std::fs::write(place.path("peers.json"), text).unwrap();

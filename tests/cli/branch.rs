@@ -9,11 +9,7 @@ fn a_branch_has_the_requested_number_of_points() {
     let run = place.quiet(&[&CB[..], &["--points", "17"]].concat());
     let rows = cells(&run.out, BRANCH);
     assert_eq!(rows.len(), 17);
-    let marks: Vec<&str> = rows
-        .iter()
-        .map(|row| row[16])
-        .filter(|mark| !mark.is_empty())
-        .collect();
+    let marks: Vec<&str> = rows.iter().map(|row| row[16]).filter(|mark| !mark.is_empty()).collect();
     assert_eq!(marks, ["first-touch", "slip-off", "second-fold"]);
     let both = place.quiet(&["branch", "scene.toml", "--distance", "15.66"]);
     assert_eq!(cells(&both.out, BRANCH).len(), 400);
@@ -25,25 +21,12 @@ fn the_fold_can_be_asked_for() {
     let place = Place::with(SCENE);
     for distance in ["5.5", "8", "11.3", "14.1", "15.66", "17.9"] {
         for side in ["cb", "cf"] {
-            let run = place.quiet(&[
-                "branch",
-                "scene.toml",
-                "--distance",
-                distance,
-                "--side",
-                side,
-            ]);
+            let run =
+                place.quiet(&["branch", "scene.toml", "--distance", distance, "--side", side]);
             let rows = cells(&run.out, BRANCH);
             let fold = rows.iter().find(|row| row[16] == "slip-off").unwrap();
             for branch in ["stable", "unstable"] {
-                let at = [
-                    "shape",
-                    "scene.toml",
-                    "--distance",
-                    distance,
-                    "--push-angle",
-                    fold[3],
-                ];
+                let at = ["shape", "scene.toml", "--distance", distance, "--push-angle", fold[3]];
                 place.quiet(&[&at[..], &["--branch", branch, "--points=2"]].concat());
             }
         }
@@ -79,14 +62,9 @@ fn several_poles_share_a_table_and_a_plot() {
     ] {
         place.quiet(&[&several[..], &["--y", column, "--whole", "--plot=p.svg"]].concat());
         let svg = place.text("p.svg");
-        for text in [
-            label,
-            "first touch",
-            "slip-off",
-            "second fold",
-            "10 mm, stable",
-            "15.66 mm, stable",
-        ] {
+        for text in
+            [label, "first touch", "slip-off", "second fold", "10 mm, stable", "15.66 mm, stable"]
+        {
             assert!(svg.contains(&format!(">{text}<")), "{column}: {text}");
         }
     }

@@ -53,21 +53,14 @@ fn own_names_of_columns_are_the_expected_ones() {
         assert_eq!(expected.err.matches(note).count(), 1, "{expected:?}");
         place.write("table.csv", &format!("{renamed},day\n{row},Monday\n"));
         let found = place.run(&[command, &["table.csv", "--columns", names]].concat());
-        assert_eq!(
-            (found.code, &found.out),
-            (Some(0), &expected.out),
-            "{found:?}"
-        );
+        assert_eq!((found.code, &found.out), (Some(0), &expected.out), "{found:?}");
     }
 }
 
 #[test]
 fn names_of_columns_that_do_not_fit_are_refused() {
     let place = Place::with(SCENE);
-    place.write(
-        "table.csv",
-        "side,d,angle,angle,push_chord_deg\ncb,15.66,15.6,1,2\n",
-    );
+    place.write("table.csv", "side,d,angle,angle,push_chord_deg\ncb,15.66,15.6,1,2\n");
     let curve = ["curve", "scene.toml", "--data", "table.csv", "--columns"];
     for (names, said) in [
         (
@@ -83,10 +76,7 @@ fn names_of_columns_that_do_not_fit_are_refused() {
             "push=angle",
             "columns push=angle: `angle` must be one column of the file, and is several",
         ),
-        (
-            "distance=d,distance_mm=side",
-            "columns distance_mm=side: `distance_mm` is given twice",
-        ),
+        ("distance=d,distance_mm=side", "columns distance_mm=side: `distance_mm` is given twice"),
         ("distance=d,kind=d", "columns kind=d: `d` is given twice"),
         (
             "push_chord_deg=d",
@@ -96,14 +86,9 @@ fn names_of_columns_that_do_not_fit_are_refused() {
             "distance",
             "must be NAME=COLUMN, the name that the command expects and the column of the file, such as distance_mm=d",
         ),
-        (
-            "=d",
-            "must be NAME=COLUMN, the name that the command expects",
-        ),
+        ("=d", "must be NAME=COLUMN, the name that the command expects"),
     ] {
-        place
-            .run(&[&curve[..], &[names]].concat())
-            .assert_refused(&[said]);
+        place.run(&[&curve[..], &[names]].concat()).assert_refused(&[said]);
     }
 }
 
@@ -112,21 +97,13 @@ fn names_of_columns_that_do_not_fit_are_refused() {
 fn columns_with_nearly_right_names_are_refused() {
     let place = Place::with(SCENE);
     for (header, row, said) in [
-        (
-            "SD_deg",
-            "1",
-            "has the column SD_deg; did you mean `sd_deg`?",
-        ),
+        ("SD_deg", "1", "has the column SD_deg; did you mean `sd_deg`?"),
         (
             "sd_rad",
             "1",
             "has the column sd_rad; values must be in deg: convert them, and use the name `sd_deg`",
         ),
-        (
-            "Kind",
-            "slip-off",
-            "has the column Kind; did you mean `kind`?",
-        ),
+        ("Kind", "slip-off", "has the column Kind; did you mean `kind`?"),
     ] {
         place.write(
             "table.csv",
@@ -135,14 +112,9 @@ fn columns_with_nearly_right_names_are_refused() {
         let run = place.run(&["curve", "scene.toml", "--data", "table.csv"]);
         run.assert_refused(&[&format!("table.csv:1: {said}")]);
     }
-    place.write(
-        "table.csv",
-        "base_moment_nnm,base_force_y_un,base_force_x_mn\n60,5,1\n",
-    );
+    place.write("table.csv", "base_moment_nnm,base_force_y_un,base_force_x_mn\n60,5,1\n");
     let said = "has the column base_force_x_mn; values must be in uN: convert them, and use the name `base_force_x_un`";
-    place
-        .run(&["locate", "scene.toml", "--readings", "table.csv"])
-        .assert_refused(&[said]);
+    place.run(&["locate", "scene.toml", "--readings", "table.csv"]).assert_refused(&[said]);
     let scene = SCENE.replace("[grid]", "[whiskers]\ntable = \"table.csv\"\n[grid]");
     let place = Place::with(&scene);
     place.write("table.csv", "name,base_diameter_um\nA,80\n");
@@ -156,23 +128,11 @@ fn names_of_columns_need_a_table() {
     let place = Place::with(SCENE);
     let commands: [(&[&str], &str); 6] = [
         (&["curve", "scene.toml"], "<--data <FILE>>"),
-        (
-            &["fit", "scene.toml", "--free", "length_mm"],
-            "--data <FILE>",
-        ),
+        (&["fit", "scene.toml", "--free", "length_mm"], "--data <FILE>"),
         (&["explore", "scene.toml"], "<--data <FILE>>"),
-        (
-            &["texture", "scene.toml", "--sine", "1deg,1,1"],
-            "<--angles <FILE>>",
-        ),
-        (
-            &["locate", "scene.toml", "--base-moment", "60nNm"],
-            "<--readings <FILE>>",
-        ),
-        (
-            &["reproduce", "figures"],
-            "<--fig4d <FILE>|--fig5c-left <FILE>|--fig5c-right <FILE>>",
-        ),
+        (&["texture", "scene.toml", "--sine", "1deg,1,1"], "<--angles <FILE>>"),
+        (&["locate", "scene.toml", "--base-moment", "60nNm"], "<--readings <FILE>>"),
+        (&["reproduce", "figures"], "<--fig4d <FILE>|--fig5c-left <FILE>|--fig5c-right <FILE>>"),
     ];
     for (command, options) in commands {
         let said = place.run(&[command, &["--columns", "distance=d"]].concat());

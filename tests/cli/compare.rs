@@ -29,20 +29,16 @@ fn change(place: &Place, source: &str, change: impl Fn(&mut Panel, usize)) {
         arithmetic: "fma",
     };
     let path = place.path("changed.exr");
-    let mut writer = MapWriter::create(
-        Output::create(&path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut writer =
+        MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     let slice = MapSlice::from(map);
     for whisker in 0..scene.whisker_count() {
         let mut panel = slice.panel(Channels::STANDARD, whisker).unwrap();
         change(&mut panel, whisker);
         writer.write_panels(&[panel]).unwrap();
     }
-    writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap();
+    writer.finish(EngineCells::default(), Audit::default()).unwrap();
 }
 
 fn compare(place: &Place, options: &[&str]) -> Run {
@@ -57,9 +53,8 @@ fn document(place: &Place, options: &[&str], code: i32) -> Value {
 }
 
 fn channel<'a>(document: &'a Value, name: &str) -> &'a Value {
-    let mut all = ["codes", "quantities"]
-        .into_iter()
-        .flat_map(|kind| document[kind].as_array().unwrap());
+    let mut all =
+        ["codes", "quantities"].into_iter().flat_map(|kind| document[kind].as_array().unwrap());
     all.find(|row| row["channel"] == name).unwrap()
 }
 
@@ -67,19 +62,14 @@ fn channel<'a>(document: &'a Value, name: &str) -> &'a Value {
 fn formats_do_not_differ() {
     let place = Place::with(&sweep());
     place.map(&["scene.toml", "--no-png"]);
-    place.map(&words(
-        "scene.toml --format zarr --channels regime,status,force_un",
-    ));
+    place.map(&words("scene.toml --format zarr --channels regime,status,force_un"));
     let maps = ["outputs/scene.exr", "outputs/scene.zarr"];
     let run = compare(&place, &[&maps[..], &["--within", "0"]].concat());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
     assert_eq!(run.count("  cells"), 4 * 24 * 24);
     assert_eq!(run.count("cells differ in regime"), 0);
     let only = "only in outputs/scene.exr: arc_length_mm, base_force_x_un, ";
-    assert!(
-        run.out.contains(only) && !run.out.contains("only in outputs/scene.zarr"),
-        "{run:?}"
-    );
+    assert!(run.out.contains(only) && !run.out.contains("only in outputs/scene.zarr"), "{run:?}");
 }
 
 /// The last whisker has friction 0.2 and a pole of 0.2 mm. Cell 300 is in row 12 and column 12.
@@ -116,10 +106,7 @@ fn changed_cells_are_found() {
     });
     let regime = channel(&found, "regime");
     assert_eq!(regime["differing"], 1);
-    assert_eq!(
-        regime["pairs"],
-        json!([{"names": ["contact", "slip-off"], "cells": 1}])
-    );
+    assert_eq!(regime["pairs"], json!([{"names": ["contact", "slip-off"], "cells": 1}]));
     assert_eq!(regime["first"][0]["place"], place_of_cell);
     let forces = channel(&found, "force_un");
     let known = force.iter().filter(|force| !force.is_nan()).count();
@@ -146,10 +133,7 @@ fn changed_cells_are_found() {
     assert_eq!(exceeded("force_un=3,regime=1", 1), json!(["force_un"]));
     assert_eq!(exceeded("1,regime=1", 0), json!([]));
     let run = compare(&place, &[&maps[..], &["--within", "0"]].concat());
-    run.assert_said(
-        1,
-        "error: the maps differ by more than --within allows in regime, arc",
-    );
+    run.assert_said(1, "error: the maps differ by more than --within allows in regime, arc");
     let line = "at friction = 0.2, pole_radius_mm = 0.2, distance_mm = 11.39, push_angle_deg = 3.043: contact / slip-off";
     assert!(run.out.contains(line), "{run:?}");
 }
@@ -213,10 +197,7 @@ fn other_scenes_and_grids_are_refused() {
         ("regime=1,regime=1", "must be given once"),
         ("forces=1", "must be one of the channels, regime, "),
         ("arc_length_mm=1deg", "unit deg: must be mm"),
-        (
-            "force_un=1",
-            "--within force_un: outputs/scene.exr has no such channel; it has regime",
-        ),
+        ("force_un=1", "--within force_un: outputs/scene.exr has no such channel; it has regime"),
     ] {
         let within = format!("--within={within}");
         compare(&place, &[&same[..], &[&within]].concat()).assert_refused(&[said]);
@@ -234,9 +215,7 @@ fn marks_are_ignored_and_shapes_and_tables_compared() {
     let profile = |middle: f64| {
         let radii = format!("[whisker.profile]\nrows = [[0, 30], [10, {middle}], [20, 1.5]]\n");
         let removed = ["base_radius_um = 30.0\n", "tip_radius_um = 1.5\n"];
-        let lines = removed
-            .iter()
-            .fold(SCENE.to_owned(), |scene, line| scene.replace(line, ""));
+        let lines = removed.iter().fold(SCENE.to_owned(), |scene, line| scene.replace(line, ""));
         format!("{lines}{radii}")
     };
     let table = |rows: &str| format!("{SCENE}[whiskers]\ntable = [{rows}]\n");
@@ -260,10 +239,7 @@ fn marks_are_ignored_and_shapes_and_tables_compared() {
     assert_eq!(compare(&place, &[&plain, &marked]).code, Some(0));
     for (pair, said) in [
         (["radii", "others"], "whisker.profile is not the same"),
-        (
-            ["table", "longer"],
-            "the whisker C2 of the table is not the same",
-        ),
+        (["table", "longer"], "the whisker C2 of the table is not the same"),
         (
             ["table", "renamed"],
             "the axis whisker differs: 2 values from C1 to C2 in the first map, 2 values from C1 to D9",

@@ -37,11 +37,7 @@ fn a_part_of_a_scene_is_that_of_its_map() {
     }
     for (part, output, formats) in [
         (&["--at=pole_radius_mm=0.21"][..], "part.csv", &["zarr"][..]),
-        (
-            &["--at=curvature_per_mm=0", "--channel=force_un"],
-            "part.npy",
-            &["exr", "zarr"],
-        ),
+        (&["--at=curvature_per_mm=0", "--channel=force_un"], "part.npy", &["exr", "zarr"]),
         (&["--at=pole_radius_mm=0.4"], "part.zarr", &["exr", "zarr"]),
         (&["--at=distance_mm=5"], "part.zarr", &["zarr"]),
         (&["--channel=force_un"], "part.zarr", &["zarr"]),
@@ -125,10 +121,7 @@ fn a_scene_comes_from_standard_input() {
     assert!(place.bytes("piped.exr") == place.bytes("part.exr"));
 
     let run = piped(&place, &["render", "-"], &sweep());
-    assert_eq!(
-        (run.code, &*run.out.replace('\\', "/")),
-        (Some(0), "outputs/scene.png\n")
-    );
+    assert_eq!((run.code, &*run.out.replace('\\', "/")), (Some(0), "outputs/scene.png\n"));
     let compared = words("compare outputs/scene.exr - --within=0 --engine=cpu");
     assert_eq!(piped(&place, &compared, &sweep()).code, Some(0));
     piped(&place, &["compare", "-", "-"], &sweep()).assert_refused(&[READ_TWICE]);
@@ -142,49 +135,30 @@ fn a_scene_is_compared_with_its_map() {
     let some = "--channels=regime,force_un,d_push_d_base_radius_um";
     place.map(&["scene.toml", "--format=zarr", some]);
     place.map(&["scene.toml", "--no-png", "--digits=3"]);
-    let run = place.good(&words(
-        "compare outputs/scene.zarr scene.toml --within=0 --engine=cpu",
-    ));
+    let run = place.good(&words("compare outputs/scene.zarr scene.toml --within=0 --engine=cpu"));
     // The scene has the channels of the store.
     assert!(!run.out.contains("only in"), "{run:?}");
     assert_eq!(run.count("  cells"), 6 * 24 * 24);
-    assert!(
-        run.out.contains("scene.toml: engine cpu f64, arithmetic "),
-        "{run:?}"
-    );
+    assert!(run.out.contains("scene.toml: engine cpu f64, arithmetic "), "{run:?}");
     assert!(run.out.contains("d_push_d_base_radius_um"), "{run:?}");
     place.good(&["compare", "scene.toml", "outputs/scene.exr", "--within=0"]);
     place.good(&["compare", "scene.toml", "scene.toml", "--within=0"]);
 
-    place.write(
-        "other.toml",
-        &sweep().replace("friction = 0.2", "friction = 0.3"),
-    );
+    place.write("other.toml", &sweep().replace("friction = 0.2", "friction = 0.3"));
     let other = ["compare", "other.toml", "outputs/scene.exr"];
-    place.run(&other).assert_said(
-        2,
-        "the scenes differ: friction is 0.3 in the first map, 0.2 in the second",
-    );
-    place.write("other.toml", &sweep().replace("count = 24", "count = 12"));
     place
         .run(&other)
-        .assert_said(2, "the axis distance_mm differs");
+        .assert_said(2, "the scenes differ: friction is 0.3 in the first map, 0.2 in the second");
+    place.write("other.toml", &sweep().replace("count = 24", "count = 12"));
+    place.run(&other).assert_said(2, "the axis distance_mm differs");
 }
 
 #[test]
 fn derivatives_are_computed_if_they_are_named() {
     let place = Place::with(SCENE);
     let channel = "d_push_d_base_radius_um";
-    place.map(&[
-        "scene.toml",
-        "--no-png",
-        "--channels",
-        &format!("regime,status,{channel}"),
-    ]);
-    for (from, to) in [
-        ("scene.toml", "computed.npy"),
-        ("outputs/scene.exr", "stored.npy"),
-    ] {
+    place.map(&["scene.toml", "--no-png", "--channels", &format!("regime,status,{channel}")]);
+    for (from, to) in [("scene.toml", "computed.npy"), ("outputs/scene.exr", "stored.npy")] {
         place.good(&["extract", from, "--channel", channel, "-o", to]);
     }
     assert!(place.bytes("computed.npy") == place.bytes("stored.npy"));
@@ -214,10 +188,7 @@ fn bad_parts_of_scenes_are_refused() {
             &["--at=taper=1"],
             "--at taper: 1 is more than half a step beyond the axis, which goes from 0 to 0.9",
         ),
-        (
-            &["--at=taper=0", "--at=taper=0"],
-            "--at taper: is given twice",
-        ),
+        (&["--at=taper=0", "--at=taper=0"], "--at taper: is given twice"),
         (
             &["--at=taper=0", "--channel=force"],
             "--channel force: must be one of regime, status, arc_length_mm",
@@ -227,24 +198,12 @@ fn bad_parts_of_scenes_are_refused() {
             "--channel d_push_d_spiral_per_mm: must be one of regime",
         ),
         (&["--channel=forc_un"], "did you mean `force_un`?"),
-        (
-            &["--engine=cpu", "--precision=f32"],
-            "--precision f32: the CPU computes in f64",
-        ),
-        (
-            &["--engine=cpu", "--adapter=0"],
-            "--adapter 0: the CPU engine has none",
-        ),
+        (&["--engine=cpu", "--precision=f32"], "--precision f32: the CPU computes in f64"),
+        (&["--engine=cpu", "--adapter=0"], "--adapter 0: the CPU engine has none"),
         (&["--engine=fast"], "--engine <ENGINE>"),
         (&["--tolerance=2deg"], "must be between 1e-10deg and 1deg"),
-        (
-            &["--tolerance=1e-10deg"],
-            "--tolerance 1e-10deg: must be at least",
-        ),
-        (
-            &["-o", "scene.toml"],
-            "--output scene.toml: is the input scene.toml",
-        ),
+        (&["--tolerance=1e-10deg"], "--tolerance 1e-10deg: must be at least"),
+        (&["-o", "scene.toml"], "--output scene.toml: is the input scene.toml"),
         (&["-o", "part.txt"], "must end in .png, .svg or .pdf"),
     ] {
         let run = place.run(&[&["render", "scene.toml", "--at=friction=0"], options].concat());
@@ -256,10 +215,7 @@ fn bad_parts_of_scenes_are_refused() {
     for command in ["render", "extract"] {
         let run = |scene: &str| place.run(&[command, scene, "-o", "part.png"]);
         run("nowhere.toml").assert_refused(&["nowhere.toml: cannot be read"]);
-        place.write(
-            "bad.toml",
-            &SCENE.replace("length_mm = 20", "length_mm = -20"),
-        );
+        place.write("bad.toml", &SCENE.replace("length_mm = 20", "length_mm = -20"));
         run("bad.toml").assert_refused(&[
             "bad.toml:3",
             "whisker.length_mm = -20",
@@ -267,9 +223,7 @@ fn bad_parts_of_scenes_are_refused() {
         ]);
     }
     let compared = ["compare", "scene.toml", "bad.toml"];
-    place
-        .run(&compared)
-        .assert_said(2, "whisker.length_mm = -20");
+    place.run(&compared).assert_said(2, "whisker.length_mm = -20");
 }
 
 #[test]

@@ -21,20 +21,14 @@ fn a_curve_is_a_table_of_exact_numbers() {
     assert_eq!(rows.len(), expected.len());
     for (row, end) in rows.iter().zip(&expected) {
         assert_eq!(row[0], if end.side == Side::Cb { "cb" } else { "cf" });
-        assert!(
-            ["slip-off", "pull-off", "out-of-reach"].contains(&row[3]),
-            "{row:?}"
-        );
+        assert!(["slip-off", "pull-off", "out-of-reach"].contains(&row[3]), "{row:?}");
         let number = |i: usize| (!row[i].is_empty()).then(|| row[i].parse::<f64>().unwrap());
         assert_eq!(number(1), Some(end.distance_mm));
         assert_eq!(number(4), end.push_angle_deg);
         assert_eq!(number(12), end.base_moment_nnm);
         assert_eq!(number(14), end.peak_strain);
         assert_eq!(number(17), end.residual);
-        assert_eq!(
-            row[3] == "out-of-reach",
-            row[4..].iter().all(|cell| cell.is_empty())
-        );
+        assert_eq!(row[3] == "out-of-reach", row[4..].iter().all(|cell| cell.is_empty()));
     }
 }
 
@@ -58,10 +52,7 @@ fn a_sweep_leads_with_the_whisker() {
     assert_eq!(whiskers, expected);
 
     let run = place.quiet(&["curve", "scene.toml", "--corner"]);
-    let rows = cells(
-        &run.out,
-        "taper,curvature_per_mm,side,distance_mm,push_angle_deg,reason",
-    );
+    let rows = cells(&run.out, "taper,curvature_per_mm,side,distance_mm,push_angle_deg,reason");
     assert_eq!(rows.len(), 12);
     // A perfect cone is never pulled off.
     for row in rows.iter().filter(|row| row[0] == "1.0") {
@@ -72,9 +63,7 @@ fn a_sweep_leads_with_the_whisker() {
         let arguments = [command, "scene.toml", "--distance", "9"];
         let push = ["--push-angle", "1"];
         let arguments = [&arguments[..], if command == "shape" { &push } else { &[] }].concat();
-        place
-            .run(&arguments)
-            .assert_refused(&["grid.taper: the scene sweeps 6 whiskers", command]);
+        place.run(&arguments).assert_refused(&["grid.taper: the scene sweeps 6 whiskers", command]);
     }
 }
 
@@ -83,17 +72,11 @@ fn a_curve_without_any_end_is_written_and_fails() {
     let place = Place::with(super::map::HINGED);
     let run = place.run(&["curve", "scene.toml", "--csv", "curve.csv"]);
     assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(
-        run.err.contains("error: all 4 ends are unresolved"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("error: all 4 ends are unresolved"), "{run:?}");
     let table = place.text("curve.csv");
     assert_eq!(table.matches(",unresolved,").count(), 4, "{table}");
 
-    place.write(
-        "near.toml",
-        &super::map::HINGED.replace("[5, 8]", "[8, 19]"),
-    );
+    place.write("near.toml", &super::map::HINGED.replace("[5, 8]", "[8, 19]"));
     let run = place.run(&["curve", "near.toml"]);
     let warning = "warning: 2 of 4 ends are unresolved: see the column `kind`\n";
     assert_eq!((run.code, &*run.err), (Some(0), warning), "{run:?}");
@@ -103,27 +86,15 @@ fn a_curve_without_any_end_is_written_and_fails() {
 #[test]
 fn a_part_of_a_sweep_is_selected() {
     let tapers = SCENE.replace("tip_radius_um = 1.5\n", "");
-    let place = Place::with(&format!(
-        "{tapers}taper = [0, 0.5, 1]\nfriction = [0, 0.2]\n"
-    ));
-    place.write(
-        "one.toml",
-        &SCENE.replace("tip_radius_um = 1.5", "tip_radius_um = 15"),
-    );
+    let place = Place::with(&format!("{tapers}taper = [0, 0.5, 1]\nfriction = [0, 0.2]\n"));
+    place.write("one.toml", &SCENE.replace("tip_radius_um = 1.5", "tip_radius_um = 15"));
     let curve = |options: &[&str]| place.run(&[&["curve"], options].concat());
     let one = curve(&["one.toml"]);
     let at = ["--at", "taper=0.6", "--at", "friction=0"];
     let run = curve(&[&["scene.toml"], &at[..]].concat());
-    assert_eq!(
-        (run.code, &*run.err),
-        (Some(0), "taper = 0.5\nfriction = 0\n"),
-        "{run:?}"
-    );
+    assert_eq!((run.code, &*run.err), (Some(0), "taper = 0.5\nfriction = 0\n"), "{run:?}");
     let rows: Vec<&str> = run.out.lines().skip(1).collect();
-    let parts: Vec<_> = rows
-        .iter()
-        .map(|row| row.strip_prefix("0.5,0.0,").unwrap())
-        .collect();
+    let parts: Vec<_> = rows.iter().map(|row| row.strip_prefix("0.5,0.0,").unwrap()).collect();
     assert_eq!(parts, one.out.lines().skip(1).collect::<Vec<_>>());
     assert_eq!(parts.len(), 48);
     let run = curve(&[&["scene.toml"], &at[..2]].concat());
@@ -135,10 +106,7 @@ fn a_part_of_a_sweep_is_selected() {
     let picture = place.text("plot.svg");
     assert!(picture.contains("A small map, taper = 0.5, friction = 0.2"));
     for (at, said) in [
-        (
-            &["taper=2"][..],
-            "--at taper: 2 is more than half a step beyond the axis",
-        ),
+        (&["taper=2"][..], "--at taper: 2 is more than half a step beyond the axis"),
         (
             &["tapr=0.5"],
             "--at tapr: must be one of the axes, taper, friction; did you mean `taper`?",
@@ -160,10 +128,7 @@ fn a_part_of_a_sweep_is_selected() {
 #[test]
 fn a_plot_shows_all_whiskers() {
     let tapers = SCENE.replace("tip_radius_um = 1.5\n", "");
-    let (few, many) = (
-        "[0, 0.1, 0.2, 0.4, 0.6, 0.8, 1]",
-        "{ from = 0, to = 1, count = 16 }",
-    );
+    let (few, many) = ("[0, 0.1, 0.2, 0.4, 0.6, 0.8, 1]", "{ from = 0, to = 1, count = 16 }");
     for (axis, names, count) in [
         (few, &["0", "0.1", "0.2", "0.4", "0.6", "0.8", "1"][..], 7),
         (many, &["0", "0.2667", "0.5333", "0.7333", "1"], 16),

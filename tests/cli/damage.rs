@@ -32,10 +32,7 @@ fn torn_and_missing_files_are_found_and_computed_again() {
     run.assert_said(1, "force_un/c.0.1.2.0.0 is damaged");
     run.assert_said(1, "1 block is missing, 1 block is damaged");
     let run = status(&place, "--verify");
-    run.assert_said(
-        1,
-        "status/c.0.1.0.0.0 is damaged: chunk 0 does not have its checksum",
-    );
+    run.assert_said(1, "status/c.0.1.0.0.0 is damaged: chunk 0 does not have its checksum");
     run.assert_said(1, "1 block is missing, 2 blocks are damaged");
     assert!(run.out.contains("damaged blocks: "), "{run:?}");
     let run = good(&place, "out", &["--resume"]);
@@ -107,25 +104,16 @@ fn an_edited_scene_is_found_and_the_scene_of_the_run_written_again() {
     good(&place, "out", &[]);
     let root = place.path("out/scene.zarr/zarr.json");
     let text = fs::read_to_string(&root).unwrap();
-    fs::write(
-        &root,
-        text.replacen("base_radius_um = 30.0", "base_radius_um = 31.0", 1),
-    )
-    .unwrap();
+    fs::write(&root, text.replacen("base_radius_um = 30.0", "base_radius_um = 31.0", 1)).unwrap();
     for arguments in [
         &["status", "out/scene.zarr"][..],
         &["extract", "out/scene.zarr", "-o", "x.csv"],
         &["render", "out/scene.zarr", "-o", "x.png"],
     ] {
-        place
-            .run(arguments)
-            .assert_said(2, "zarr.json is damaged: its `identity` does not fit");
+        place.run(arguments).assert_said(2, "zarr.json is damaged: its `identity` does not fit");
     }
     let run = good(&place, "out", &["--resume"]);
-    assert!(
-        run.err.contains("zarr.json was damaged: rewritten"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("zarr.json was damaged: rewritten"), "{run:?}");
     assert_same(&place, "whole", "out");
 
     // A run with other settings must not accept or overwrite the blocks.
@@ -162,12 +150,7 @@ fn blocks_under_a_wrong_root_stay() {
     let run = map(&place, "out", &["--resume"]);
     run.assert_said(2, "scene.zarr has blocks of another scene, version");
     for (name, bytes) in files(&place.path("out")) {
-        let is_block = name
-            .file_name()
-            .unwrap()
-            .to_str()
-            .unwrap()
-            .starts_with("c.0.");
+        let is_block = name.file_name().unwrap().to_str().unwrap().starts_with("c.0.");
         assert!(!is_block || bytes == before[&name], "{}", name.display());
     }
 }
@@ -182,11 +165,9 @@ fn arrays_in_each_others_folder_are_computed_again() {
         for option in ["--verify", "--repair"] {
             good(&place, "out", &only);
             let folder = |name: &str| place.path("out/scene.zarr").join(name);
-            for (from, to) in [
-                ("regime", "aside"),
-                ("regime_cells", "regime"),
-                ("aside", "regime_cells"),
-            ] {
+            for (from, to) in
+                [("regime", "aside"), ("regime_cells", "regime"), ("aside", "regime_cells")]
+            {
                 fs::rename(folder(from), folder(to)).unwrap();
             }
             status(&place, option).assert_said(1, "1 block is missing");
@@ -209,14 +190,8 @@ fn a_folder_of_others_is_no_store() {
     fs::create_dir_all(place.path("out/scene.zarr/taper")).unwrap();
     place.write("out/scene.zarr/taper/zarr.json", "of somebody");
     let run = map(&place, "out", &[]);
-    run.assert_said(
-        2,
-        "is not a store of whiskmap: it has files, but no zarr.json",
-    );
-    assert_eq!(
-        place.bytes("out/scene.zarr/taper/zarr.json"),
-        b"of somebody"
-    );
+    run.assert_said(2, "is not a store of whiskmap: it has files, but no zarr.json");
+    assert_eq!(place.bytes("out/scene.zarr/taper/zarr.json"), b"of somebody");
     for root in ["[]", "1", "\"x\"", "null", "{}", "{\"attributes\": 1}"] {
         place.write("out/scene.zarr/zarr.json", root);
         status(&place, "--verify").assert_said(2, "it has no attributes");
@@ -257,8 +232,5 @@ fn scenes_that_differ_in_line_endings_are_distinguished() {
     good(&place, "out", &[]);
     place.write("scene.toml", &SMALL.replace('\n', "\r\n"));
     let run = map(&place, "out", &["--resume"]);
-    run.assert_said(
-        2,
-        "differs in `scene`: line endings there, other line endings here",
-    );
+    run.assert_said(2, "differs in `scene`: line endings there, other line endings here");
 }

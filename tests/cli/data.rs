@@ -51,10 +51,7 @@ fn points_beside_the_curve() {
     }
 
     // Chord angles are compared with the curve of chord angles.
-    place.write(
-        "points.csv",
-        "side,distance_mm,push_chord_deg\ncb,15.66,15.14\n",
-    );
+    place.write("points.csv", "side,distance_mm,push_chord_deg\ncb,15.66,15.14\n");
     let run = curve(&place, &["--csv", "t.csv", "--plot", "p.svg"]);
     assert_eq!(run.out, "t.csv\np.svg\n");
     let svg = place.text("p.svg");
@@ -88,25 +85,18 @@ fn the_curve_reaches_points_beyond_the_grid() {
 #[test]
 fn points_that_never_detach() {
     let place = Place::with(super::map::HINGED);
-    place.write(
-        "points.csv",
-        "side,distance_mm,push_angle_deg\ncb,8,40\ncb,19,5\n",
-    );
+    place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,8,40\ncb,19,5\n");
     let run = curve(&place, &[]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let named = "warning: points.csv:2: left out: by theory this side never detaches at 8 mm\n\
                  points compared: 1, 1 left out, 0 of another kind than predicted\n";
     assert!(run.err.starts_with(named), "{run:?}");
-    assert_eq!(
-        cells(&run.out, POINTS)[0][4..],
-        ["", "", "", "unresolved", "", "no-detachment"]
-    );
+    assert_eq!(cells(&run.out, POINTS)[0][4..], ["", "", "", "unresolved", "", "no-detachment"]);
     place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,8,40\n");
     let run = curve(&place, &[]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(
-        run.err
-            .contains("error: all 1 points are unresolved: see the column `predicted_kind`"),
+        run.err.contains("error: all 1 points are unresolved: see the column `predicted_kind`"),
         "{run:?}"
     );
 }

@@ -2,14 +2,7 @@
 
 use super::{Place, SCENE, words};
 
-const TAPER: [&str; 6] = [
-    "design",
-    "scene.toml",
-    "--distance",
-    "15.66",
-    "--for",
-    "taper",
-];
+const TAPER: [&str; 6] = ["design", "scene.toml", "--distance", "15.66", "--for", "taper"];
 
 /// Runs `design` with more arguments.
 fn run(place: &Place, more: &[&str]) -> super::Run {
@@ -33,10 +26,7 @@ fn a_value_is_a_line() {
     let curve = place.quiet(&["curve", "designed.toml"]).out;
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     assert_eq!((end[0], end[3]), ("cb", "slip-off"));
-    assert!(
-        (end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-7,
-        "{curve}"
-    );
+    assert!((end[4].parse::<f64>().unwrap() - 20.0).abs() < 1e-7, "{curve}");
     // The value has 10 digits. The scene written by -o has the radius to match, and its comments.
     assert!((11..=12).contains(&line.len()), "{line}");
     place.write("scene.toml", &format!("# mine\n{SCENE}"));
@@ -46,10 +36,7 @@ fn a_value_is_a_line() {
     let radius = better.split("tip_radius_um = ").nth(1).unwrap();
     let radius = radius.split_whitespace().next().unwrap();
     let tip_radius: f64 = radius.parse().unwrap();
-    assert!(
-        better.starts_with("# mine\n") && radius.len() <= 12,
-        "{better}"
-    );
+    assert!(better.starts_with("# mine\n") && radius.len() <= 12, "{better}");
     assert!((tip_radius / 30.0 + taper - 1.0).abs() < 1e-9, "{better}");
     assert_eq!(run(&place, &["--slip-off", "20deg", "-o", "-"]).out, better);
     // The plot does not change the result, and has one dot at the solution.
@@ -60,18 +47,10 @@ fn a_value_is_a_line() {
         svg.contains(">taper (1 \u{2212} tip/base radius)<") && svg.contains(">20 deg<"),
         "{svg}"
     );
-    assert_eq!(
-        svg.matches("<circle").count(),
-        2,
-        "the dot, and its sample in the legend"
-    );
+    assert_eq!(svg.matches("<circle").count(), 2, "the dot, and its sample in the legend");
     // The angle in another unit; its sign gives the side.
     for angle in ["20", "20 deg", "20°", "0.3490658503988659rad"] {
-        assert_eq!(
-            run(&place, &["--slip-off", angle]).out,
-            found.out,
-            "{angle}"
-        );
+        assert_eq!(run(&place, &["--slip-off", angle]).out, found.out, "{angle}");
     }
 }
 
@@ -94,10 +73,7 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
             ", and it is pulled off between ",
         ],
     );
-    none(
-        &["--pull-off", "-5"],
-        &[range, "pulls the whisker off at -5 deg: "],
-    );
+    none(&["--pull-off", "-5"], &[range, "pulls the whisker off at -5 deg: "]);
     none(
         &["--max-strain", "10", "--side", "cb"],
         &[
@@ -108,43 +84,23 @@ fn an_unreachable_target_is_refused_with_the_angles_that_are_reached() {
     );
     // Numbers come back in the unit of the question.
     for (moment, asked, reached) in [
-        (
-            "20mNm",
-            "gives a largest moment at the base of 20 mNm: it slips off with 7.88",
-            "mNm",
-        ),
-        (
-            "5uNmm",
-            "gives a largest moment at the base of 5 uNmm: it slips off with ",
-            "uNmm",
-        ),
+        ("20mNm", "gives a largest moment at the base of 20 mNm: it slips off with 7.88", "mNm"),
+        ("5uNmm", "gives a largest moment at the base of 5 uNmm: it slips off with ", "uNmm"),
     ] {
         none(
             &["--max-moment", moment, "--side", "cb"],
-            &[
-                range,
-                asked,
-                &format!(" {reached} to "),
-                &format!(" {reached}, and "),
-            ],
+            &[range, asked, &format!(" {reached} to "), &format!(" {reached}, and ")],
         );
     }
-    none(
-        &["--slip-off", "0.1rad"],
-        &["slip off at 0.1 rad: it slips off between 0.", " rad and "],
-    );
+    none(&["--slip-off", "0.1rad"], &["slip off at 0.1 rad: it slips off between 0.", " rad and "]);
     let far = words("design scene.toml --distance 150 --for taper --slip-off 9");
     let far = place.run(&far);
     assert_eq!(far.code, Some(1), "{far:?}");
     assert!(far.err.contains("it does not reach the pole"), "{far:?}");
-    let soft = SCENE.replace(
-        "[grid]",
-        "[whisker.follicle]\nstiffness_nnm_per_rad = 10\n[grid]",
-    );
+    let soft = SCENE.replace("[grid]", "[whisker.follicle]\nstiffness_nnm_per_rad = 10\n[grid]");
     place.write("soft.toml", &soft);
-    let soft = place.run(&words(
-        "design soft.toml --distance 5 --for base_radius_um --slip-off 40",
-    ));
+    let soft =
+        place.run(&words("design soft.toml --distance 5 --for base_radius_um --slip-off 40"));
     let said =
         "the ends of some pushes are unresolved, such as those beyond nine turns of the base";
     assert!(soft.code == Some(1) && soft.err.contains(said), "{soft:?}");
@@ -192,38 +148,23 @@ fn a_target_that_every_value_reaches_has_a_range() {
 fn what_cannot_be_designed_is_refused() {
     let place = Place::with(SCENE);
     let refused = |more: &[&str], parts: &[&str]| run(&place, more).assert_refused(parts);
-    refused(
-        &[],
-        &["--slip-off <ANGLE>|--pull-off <ANGLE>|--max-force <FORCE>"],
-    );
+    refused(&[], &["--slip-off <ANGLE>|--pull-off <ANGLE>|--max-force <FORCE>"]);
     refused(&["--max-force", "60mN"], &["--side"]);
     let cb = |goal, value| ["--side", "cb", goal, value];
-    refused(
-        &cb("--max-force", "60Nm"),
-        &["unit Nm: must be uN (the default), nN, mN or N"],
-    );
+    refused(&cb("--max-force", "60Nm"), &["unit Nm: must be uN (the default), nN, mN or N"]);
     refused(&cb("--max-strain", "-1"), &["must be more than 0"]);
     refused(&cb("--max-moment", "0uNm"), &["must be more than 0"]);
-    refused(
-        &["--slip-off", "9", "--pull-off", "9"],
-        &["cannot be used with"],
-    );
+    refused(&["--slip-off", "9", "--pull-off", "9"], &["cannot be used with"]);
     refused(
         &["--slip-off", "9", "--plot", "p.gif"],
         &["--plot p.gif: must end in .png, .svg or .pdf"],
     );
     refused(
         &["--slip-off", "nine"],
-        &[
-            "'nine'",
-            "must be an angle, such as 30, 30deg, 30° or 0.5rad",
-        ],
+        &["'nine'", "must be an angle, such as 30, 30deg, 30° or 0.5rad"],
     );
     for angle in ["0", "361", "7rad"] {
-        refused(
-            &["--slip-off", angle],
-            &["must be between -360deg and 360deg, and not 0"],
-        );
+        refused(&["--slip-off", angle], &["must be between -360deg and 360deg, and not 0"]);
     }
     refused(
         &["--slip-off", "-9", "--side", "cb"],
@@ -234,35 +175,16 @@ fn what_cannot_be_designed_is_refused() {
         &["--pull-off 9 deg: a push angle of --side cf must be negative"],
     );
     let other = |scene: &str, name: &str, parts: &[&str]| {
-        let words = [
-            "design",
-            scene,
-            "--distance",
-            "9",
-            "--slip-off",
-            "9",
-            "--for",
-            name,
-        ];
+        let words = ["design", scene, "--distance", "9", "--slip-off", "9", "--for", name];
         place.run(&words).assert_refused(parts);
     };
     other(
         "scene.toml",
         "friction",
-        &[
-            "scene.toml: --for friction: must be one of length_mm, ",
-            "it has no contact.friction",
-        ],
+        &["scene.toml: --for friction: must be one of length_mm, ", "it has no contact.friction"],
     );
-    other(
-        "scene.toml",
-        "stiffness",
-        &["'stiffness'", "--for", "taper"],
-    );
-    place.write(
-        "sweep.toml",
-        &format!("{SCENE}curvature_per_mm = [0.02, 0.03]\n"),
-    );
+    other("scene.toml", "stiffness", &["'stiffness'", "--for", "taper"]);
+    place.write("sweep.toml", &format!("{SCENE}curvature_per_mm = [0.02, 0.03]\n"));
     other(
         "sweep.toml",
         "taper",
@@ -271,9 +193,7 @@ fn what_cannot_be_designed_is_refused() {
         ],
     );
     let far = words("design scene.toml --distance 1e9 --slip-off 9 --for taper");
-    place
-        .run(&far)
-        .assert_refused(&["--distance 1000000000 mm: must be between"]);
+    place.run(&far).assert_refused(&["--distance 1000000000 mm: must be between"]);
 }
 
 /// Several parameters have a header, and the scene with the values reaches all targets. Distances may be parts of the length.
@@ -286,11 +206,7 @@ fn several_targets_have_a_line_of_values() {
     let found = place.quiet(&[&asked[..], &more].concat());
     let mut lines = found.out.lines();
     assert_eq!(lines.next(), Some("base_radius_um,taper"));
-    let values = lines
-        .next()
-        .unwrap()
-        .split(',')
-        .map(|value| value.parse().unwrap());
+    let values = lines.next().unwrap().split(',').map(|value| value.parse().unwrap());
     let values: Vec<f64> = values.collect();
     assert_eq!((values.len(), lines.next()), (2, None), "{found:?}");
     let again = words("design better.toml --distance 12 --slip-off 30deg --for taper");
@@ -310,28 +226,11 @@ fn several_targets_have_a_line_of_values() {
 #[test]
 fn a_distance_and_a_kept_taper_are_designed() {
     let place = Place::with(SCENE);
-    let found = place.good(&words(
-        "design scene.toml --slip-off 20deg --for distance_mm",
-    ));
+    let found = place.good(&words("design scene.toml --slip-off 20deg --for distance_mm"));
     let distance = found.out.lines().next().unwrap();
-    let back = [
-        "design",
-        "scene.toml",
-        "--distance",
-        distance,
-        "--slip-off",
-        "20deg",
-        "--for",
-        "taper",
-    ];
-    let taper: f64 = place
-        .run(&back)
-        .out
-        .lines()
-        .next()
-        .unwrap()
-        .parse()
-        .unwrap();
+    let back =
+        ["design", "scene.toml", "--distance", distance, "--slip-off", "20deg", "--for", "taper"];
+    let taper: f64 = place.run(&back).out.lines().next().unwrap().parse().unwrap();
     assert!((taper - 0.95).abs() < 1e-6, "{taper}");
     let kept = [
         &words("design scene.toml --distance 12 --side cb --max-moment 100")[..],
@@ -355,35 +254,23 @@ fn targets_and_parameters_that_do_not_fit_are_refused() {
             "--distance 12 --for taper,base_radius_um",
             "--for taper,base_radius_um: must be as many parameters as targets; these are --slip-off",
         ),
-        (
-            "--for taper",
-            "--distance: is left out, and --for does not vary distance_mm",
-        ),
+        ("--for taper", "--distance: is left out, and --for does not vary distance_mm"),
         (
             "--distance 12 --for distance_mm",
             "--distance: must be left out, because --for varies distance_mm",
         ),
-        (
-            "--distance 0% --for taper",
-            "or a part of the whisker's length, such as 70%",
-        ),
+        ("--distance 0% --for taper", "or a part of the whisker's length, such as 70%"),
         (
             "--distance 12 --for taper=1..0",
             "taper: limits must be two growing values, such as taper=1..2",
         ),
-        (
-            "--distance 12 --for length_mm=1um..9deg",
-            "length_mm=9deg: unit deg: must be mm",
-        ),
+        ("--distance 12 --for length_mm=1um..9deg", "length_mm=9deg: unit deg: must be mm"),
         (
             "--distance 12 --for taper --keep taper",
             "--keep taper: it can be kept where base_radius_um or",
         ),
         ("--distance 12 --for taper --keep length", "'length'"),
-        (
-            "--for distance_mm -o b.toml",
-            "--output: must be left out with --for distance_mm",
-        ),
+        ("--for distance_mm -o b.toml", "--output: must be left out with --for distance_mm"),
         (
             "--distance 12 --for taper,length_mm --max-force 1 --plot p.svg",
             "--plot: must be left out with several parameters",

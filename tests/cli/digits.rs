@@ -12,10 +12,8 @@ const DIGITS: &str = "5,force_un=3";
 fn assert_rounded(whole: &MapSource, found: &MapSource, whiskers: usize) {
     let digits: Digits = DIGITS.parse().unwrap();
     let mut changed = 0;
-    for (channel, whisker) in whole
-        .channels()
-        .iter()
-        .flat_map(|channel| (0..whiskers).map(move |at| (channel, at)))
+    for (channel, whisker) in
+        whole.channels().iter().flat_map(|channel| (0..whiskers).map(move |at| (channel, at)))
     {
         let values = [whole, found].map(|map| map.read_panel(channel, whisker).unwrap());
         match values {
@@ -35,11 +33,8 @@ fn assert_rounded(whole: &MapSource, found: &MapSource, whiskers: usize) {
 
 #[test]
 fn both_formats_have_the_rounded_values() {
-    let place = Place::with(
-        &SWEEP
-            .replace("friction = [0, 0.3]", "")
-            .replace("count = 64", "count = 20"),
-    );
+    let place =
+        Place::with(&SWEEP.replace("friction = [0, 0.3]", "").replace("count = 64", "count = 20"));
     let map = |options: &[&str]| place.map(&[&["scene.toml", "--no-png"], options].concat());
     for (format, file) in [("exr", "scene.exr"), ("zarr", "scene.zarr")] {
         map(&["-o", "whole", "--format", format]);
@@ -52,23 +47,13 @@ fn both_formats_have_the_rounded_values() {
         assert!(whole.attribute("digits").is_err());
         let text = found.attribute("digits").unwrap();
         let text = text.as_str().unwrap();
-        assert!(
-            text.contains("force_un=3") && text.contains("margin_deg=5"),
-            "{text}"
-        );
+        assert!(text.contains("force_un=3") && text.contains("margin_deg=5"), "{text}");
     }
     assert_same(&place, "whole", "seven");
 
     // A part of a rounded map is rounded, too.
     for name in ["part.exr", "part.zarr"] {
-        place.good(&[
-            "extract",
-            "rounded/scene.zarr",
-            "--at",
-            "taper=0.5",
-            "-o",
-            name,
-        ]);
+        place.good(&["extract", "rounded/scene.zarr", "--at", "taper=0.5", "-o", name]);
         let part = MapSource::open(&place.path(name)).unwrap();
         let digits = part.digits().unwrap();
         assert_eq!(digits.mantissa_bits("force_un"), Some(10));
@@ -83,9 +68,7 @@ fn a_rounded_store_is_one_for_all_shards() {
     run("whole", "--no-png");
     run("parts", "--shard=1/2");
     place
-        .run(&words(
-            "map scene.toml --engine=cpu --format=zarr -o parts --resume --digits=5",
-        ))
+        .run(&words("map scene.toml --engine=cpu --format=zarr -o parts --resume --digits=5"))
         .assert_refused(&["differs in `digits`", "force_un=4", "force_un=5"]);
     run("parts", "--resume");
     assert_same(&place, "whole", "parts");
@@ -113,10 +96,7 @@ fn a_rounded_store_is_one_for_all_shards() {
 fn impossible_digits_are_refused() {
     let place = Place::with(SWEEP);
     for (list, part) in [
-        (
-            "0",
-            "`0`: must be N or NAME=N, N a whole number between 2 and 7",
-        ),
+        ("0", "`0`: must be N or NAME=N, N a whole number between 2 and 7"),
         ("8", "`8`: must be"),
         ("9", "`9`: must be"),
         ("5,force_un=1", "`force_un=1`: must be"),
@@ -129,13 +109,7 @@ fn impossible_digits_are_refused() {
         run.assert_refused(&["--digits", part]);
     }
     let channels = ["--format=zarr", "--channels=regime,force_un"];
-    let run = place.run(
-        &[
-            &["map", "scene.toml", "--digits=energy_nj=4"],
-            &channels[..],
-        ]
-        .concat(),
-    );
+    let run = place.run(&[&["map", "scene.toml", "--digits=energy_nj=4"], &channels[..]].concat());
     run.assert_refused(&[
         "--digits energy_nj=4: energy_nj is not stored, only regime, force_un; add it",
     ]);

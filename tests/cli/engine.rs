@@ -43,37 +43,18 @@ fn a_tolerance_chooses_the_bound_of_expansions() {
     let place = wide();
     let mut bounds = Vec::new();
     for (tolerance, is_expanded) in [("1e-3deg", true), ("1e-6deg", true), ("1e-9deg", false)] {
-        let arguments = [
-            "map",
-            "scene.toml",
-            "--engine=spectral",
-            "--no-png",
-            "--tolerance",
-            tolerance,
-        ];
+        let arguments =
+            ["map", "scene.toml", "--engine=spectral", "--no-png", "--tolerance", tolerance];
         let run = place.good(&arguments);
-        let line = run
-            .err
-            .lines()
-            .find(|line| line.starts_with("accuracy: "))
-            .unwrap();
-        let bound = line
-            .strip_prefix("accuracy: residuals of at most ")
-            .unwrap();
-        let bound: f64 = bound
-            .strip_suffix(" of the length")
-            .unwrap()
-            .parse()
-            .unwrap();
+        let line = run.err.lines().find(|line| line.starts_with("accuracy: ")).unwrap();
+        let bound = line.strip_prefix("accuracy: residuals of at most ").unwrap();
+        let bound: f64 = bound.strip_suffix(" of the length").unwrap().parse().unwrap();
         let solved = run.count("solved by the engine spectral f64");
         assert_eq!(solved > 0, is_expanded, "{run:?}");
         let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
         let residuals = map.read_channel("residual").unwrap();
         let worst = residuals.values().fold(0.0, f64::max);
-        assert!(
-            worst <= bound.max(1e-12),
-            "{tolerance}: {worst:e} {bound:e}"
-        );
+        assert!(worst <= bound.max(1e-12), "{tolerance}: {worst:e} {bound:e}");
         bounds.push(bound);
     }
     // The nearest pole is at a tenth of the length.
@@ -162,10 +143,7 @@ fn a_store_by_the_spectral_engine_is_resumed_with_the_same_bytes() {
         run
     };
     let run = spectral("whole", &[]);
-    assert!(
-        run.count("solved by the engine spectral f64") > 0,
-        "{run:?}"
-    );
+    assert!(run.count("solved by the engine spectral f64") > 0, "{run:?}");
     for shard in ["0/2", "1/2"] {
         spectral("parts", &["--shard", shard, "--resume", "--threads", "1"]);
     }

@@ -62,14 +62,8 @@ fn bad_inputs_are_refused() {
     for (words, why) in [
         (&["explore", "none.toml"][..], "none.toml"),
         (&["explore", "none.exr"], "none.exr"),
-        (
-            &["explore", "scene.toml", "--data", "far.csv"],
-            "distance_mm = 500: must be between",
-        ),
-        (
-            &["explore", "scene.toml", "-o", "scene.toml"],
-            "--output scene.toml",
-        ),
+        (&["explore", "scene.toml", "--data", "far.csv"], "distance_mm = 500: must be between"),
+        (&["explore", "scene.toml", "-o", "scene.toml"], "--output scene.toml"),
     ] {
         let run = place.run(words);
         assert_ne!(run.code, Some(0), "{words:?}");

@@ -17,16 +17,9 @@ fn a_slice_is_what_the_store_has_there() {
 
     // The nearest radius is 0.2, the second of the third axis.
     let at = words("--at=taper=0.6 --at=pole_radius_mm=0.21 --at=push_angle_deg=-70");
-    let said = run(&[
-        &at[..],
-        &["--channel=regime", "--channel=force_un", "-o", "s.csv"],
-    ]
-    .concat());
+    let said = run(&[&at[..], &["--channel=regime", "--channel=force_un", "-o", "s.csv"]].concat());
     assert_eq!((said.code, &*said.out), (Some(0), "s.csv\n"), "{said:?}");
-    assert!(
-        said.err.starts_with("taper = 0.5\npole_radius_mm = 0.2"),
-        "{said:?}"
-    );
+    assert!(said.err.starts_with("taper = 0.5\npole_radius_mm = 0.2"), "{said:?}");
     let table = place.text("s.csv");
     let mut lines = table.lines();
     let header =
@@ -41,10 +34,7 @@ fn a_slice_is_what_the_store_has_there() {
             assert_eq!(cells[1], ["0.0", "0.3"][friction]);
             assert_eq!(cells[4..6], ["-70.0", &regime.value(row * 64).to_string()]);
             let code = regime.value(row * 64) as u32;
-            let named = Regime::ALL
-                .into_iter()
-                .find(|regime| regime.code() == code)
-                .unwrap();
+            let named = Regime::ALL.into_iter().find(|regime| regime.code() == code).unwrap();
             assert_eq!(cells[6], named.name());
             let value = force.value(row * 64);
             let found = cells[7].parse::<f32>().map(f64::from).ok();
@@ -56,30 +46,21 @@ fn a_slice_is_what_the_store_has_there() {
     // Half a step beyond the end is the end, whatever the unit.
     let beyond = ["--at=distance_mm=2.01cm", "--at=push_angle_deg=-1.23rad"];
     let said = run(&[&beyond[..], &["--channel=regime", "-o", "s.csv"]].concat());
-    assert_eq!(
-        said.err, "distance_mm = 20\npush_angle_deg = -70\n",
-        "{said:?}"
-    );
+    assert_eq!(said.err, "distance_mm = 20\npush_angle_deg = -70\n", "{said:?}");
 
     let npy = words("--at=taper=0.5 --channel=force_un --exact -o s.npy");
     assert_eq!(run(&npy).code, Some(0));
     let bytes = place.bytes("s.npy");
     let start = bytes.len() - 2 * 4 * 4096 * 4;
     let header = String::from_utf8_lossy(&bytes[..start]).into_owned();
-    assert!(
-        header.contains("'shape': (2,4,64,64,)") && start.is_multiple_of(64),
-        "{header}"
-    );
+    assert!(header.contains("'shape': (2,4,64,64,)") && start.is_multiple_of(64), "{header}");
     // Friction is the slower one of the two that are left.
     let second = store.read_panel("force_un", 1 + 6).unwrap();
     let values: Vec<f32> = bytes[start + 4 * 4096..][..4 * 4096]
         .chunks(4)
         .map(|bytes| f32::from_le_bytes(bytes.try_into().unwrap()))
         .collect();
-    let mut pairs = values
-        .iter()
-        .map(|value| f64::from(*value))
-        .zip(second.values());
+    let mut pairs = values.iter().map(|value| f64::from(*value)).zip(second.values());
     assert!(pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()));
 
     for (arguments, said) in [
@@ -93,10 +74,7 @@ fn a_slice_is_what_the_store_has_there() {
             &["--at=colour=1", "-o", "s.csv"],
             "--at colour: must be one of the axes, taper, friction",
         ),
-        (
-            &["--at=frction=0", "-o", "s.csv"],
-            "push_angle_deg; did you mean `friction`?",
-        ),
+        (&["--at=frction=0", "-o", "s.csv"], "push_angle_deg; did you mean `friction`?"),
         (
             &["--at=distance_cm=1.5", "-o", "s.csv"],
             "; values must be in mm: convert them, and use the name `distance_mm`",
@@ -117,10 +95,7 @@ fn a_slice_is_what_the_store_has_there() {
             &["--at=push_angle_deg=5mm", "-o", "s.csv"],
             "unit mm: must be deg (the default), ° or rad",
         ),
-        (
-            &["--at=taper=1mm", "-o", "s.csv"],
-            "unit mm: must be left out",
-        ),
+        (&["--at=taper=1mm", "-o", "s.csv"], "unit mm: must be left out"),
         (&["--at=taper", "-o", "s.csv"], "must be AXIS=VALUE"),
         (
             &["--at=taper=0.6", "--exact", "-o", "s.csv"],
@@ -152,22 +127,13 @@ fn a_map_of_a_slice_can_be_drawn() {
             let part = slice.read_panel(name, panel).unwrap();
             let whole = store.read_panel(name, whisker).unwrap();
             let mut pairs = part.values().zip(whole.values());
-            assert!(
-                pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
-                "{name}"
-            );
+            assert!(pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()), "{name}");
         }
     }
     place.good(&["render", "slice.exr", "-o", "slice.png"]);
     let again = ["extract", "slice.exr", "--at=taper=1", "-o", "again.exr"];
     place.good(&again);
-    assert_eq!(
-        StoredMap::open(&place.path("again.exr"))
-            .unwrap()
-            .layout
-            .columns,
-        4
-    );
+    assert_eq!(StoredMap::open(&place.path("again.exr")).unwrap().layout.columns, 4);
 }
 
 /// A store of a slice is a complete store: it contains its scene, and can be sliced and drawn.
@@ -183,31 +149,18 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     place.quiet(&["status", "slice.zarr", "--verify"]);
     let [whole, slice] =
         ["scene.zarr", "slice.zarr"].map(|name| ZarrStore::open(&place.path(name)).unwrap());
-    let row = whole
-        .scene
-        .grid
-        .distance_mm
-        .iter()
-        .position(|d| (d - 5.1).abs() < 0.1);
+    let row = whole.scene.grid.distance_mm.iter().position(|d| (d - 5.1).abs() < 0.1);
     let row = row.unwrap();
-    assert_eq!(
-        slice.scene.grid.distance_mm,
-        whole.scene.grid.distance_mm[row..=row]
-    );
+    assert_eq!(slice.scene.grid.distance_mm, whole.scene.grid.distance_mm[row..=row]);
     assert_eq!(slice.scene.grid.axis(Parameter::Friction), Some(&[0.3][..]));
     assert!(
-        slice
-            .scene
-            .title
-            .starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
+        slice.scene.title.starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
     );
     assert_eq!(slice.channels, whole.channels);
     for name in slice.channels.names() {
         for whisker in 0..12 {
             let part = slice.read_panel(name, whisker).unwrap();
-            let from = whole
-                .read_panel(name, whisker % 3 + 3 + whisker / 3 * 6)
-                .unwrap();
+            let from = whole.read_panel(name, whisker % 3 + 3 + whisker / 3 * 6).unwrap();
             let mut pairs = part.values().zip(from.values().skip(row * 64));
             let same = pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan());
             assert!(same, "{name}, whisker {whisker}");
@@ -215,14 +168,8 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     }
 
     // A repeated run rewrites an equal store, but does not replace another one.
-    extract(
-        "slice.zarr",
-        &["--at=taper=1", "--exact", "-o", "again.zarr"],
-    );
-    extract(
-        "scene.zarr",
-        &["--at=taper=1", "--at=friction=0.3", "-o", "map.exr"],
-    );
+    extract("slice.zarr", &["--at=taper=1", "--exact", "-o", "again.zarr"]);
+    extract("scene.zarr", &["--at=taper=1", "--at=friction=0.3", "-o", "map.exr"]);
     for channel in [&[][..], &["--channel=force_un"]] {
         let of_map = [&["--at=push_angle_deg=-70", "-o", "map.zarr"], channel].concat();
         extract("map.exr", &of_map);
@@ -245,8 +192,5 @@ fn the_longest_title_is_extracted() {
     place.map(&["scene.toml", "--no-png"]);
     let at = ["--at=push_angle_deg=-70", "-o", "part.exr"];
     place.good(&[&["extract", "outputs/scene.exr"], &at[..]].concat());
-    assert_eq!(
-        StoredMap::open(&place.path("part.exr")).unwrap().title,
-        title
-    );
+    assert_eq!(StoredMap::open(&place.path("part.exr")).unwrap().title, title);
 }

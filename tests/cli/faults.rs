@@ -24,9 +24,7 @@ impl FaultyPlace {
         let place = Place::with(SCENE);
         let preloaded = place.path("faults.so");
         let mut compiler = Command::new("cc");
-        compiler
-            .args(["-shared", "-fPIC", "-O1", "-o"])
-            .arg(&preloaded);
+        compiler.args(["-shared", "-fPIC", "-O1", "-o"]).arg(&preloaded);
         compiler.arg(shipped::root().join("tests/support/faults.c"));
         assert!(compiler.arg("-ldl").status().unwrap().success());
         Self { place, preloaded }
@@ -35,22 +33,14 @@ impl FaultyPlace {
     /// Runs the program; the calls named `fault` fail with the error `errno`, after as many that do not.
     fn run(&self, arguments: &[&str], fault: &str, errno: i32, after: usize) -> Run {
         let mut command = self.place.plain_command(arguments);
-        command
-            .env("LD_PRELOAD", &self.preloaded)
-            .env("FAULT", fault);
+        command.env("LD_PRELOAD", &self.preloaded).env("FAULT", fault);
         command.env("ERRNO", errno.to_string());
         let command = command.env("AFTER", after.to_string());
         Run::of(&command.output().unwrap())
     }
 }
 
-const SHAPE: [&str; 5] = [
-    "shape",
-    "scene.toml",
-    "--distance=9",
-    "--push-angle=1",
-    "--csv=t.csv",
-];
+const SHAPE: [&str; 5] = ["shape", "scene.toml", "--distance=9", "--push-angle=1", "--csv=t.csv"];
 const MAP: [&str; 4] = ["map", "scene.toml", "--engine=cpu", "-o"];
 
 /// A file whose bytes are not on the disk does not get its name, in a store or not.

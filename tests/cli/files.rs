@@ -59,9 +59,7 @@ fn other_errors_come_before_a_pipe_is_opened() {
     place.pipe("t.csv");
     let mut command =
         place.command(&["shape", "scene.toml", "--distance=15.66", "--push-angle=20"]);
-    let command = command
-        .args(["--csv", "t.csv"])
-        .timeout(Duration::from_secs(100));
+    let command = command.args(["--csv", "t.csv"]).timeout(Duration::from_secs(100));
     Run::of(&command.output().unwrap()).assert_refused(&["slipped off"]);
 }
 
@@ -76,10 +74,7 @@ fn standard_output_has_a_name() {
 
     // Standard output is redirected to a file that is not empty.
     place.write("log", "before\n");
-    let log = File::options()
-        .append(true)
-        .open(place.path("log"))
-        .unwrap();
+    let log = File::options().append(true).open(place.path("log")).unwrap();
     let run = Run::of(&place.plain_command(&to).stdout(log).output().unwrap());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
     assert_eq!(place.bytes("log"), format!("before\n{streamed}").as_bytes());
@@ -102,10 +97,7 @@ fn a_device_is_written_to_and_not_named() {
         let kind = place.path(name).metadata().unwrap().file_type();
         assert!(kind.is_char_device(), "{name}");
     }
-    assert_eq!(
-        names(&place.path("")),
-        ["outputs", "p.png", "p.svg", "scene.toml", "t.csv"]
-    );
+    assert_eq!(names(&place.path("")), ["outputs", "p.png", "p.svg", "scene.toml", "t.csv"]);
 }
 
 #[test]
@@ -140,14 +132,10 @@ fn links_stay_and_their_files_are_made_or_replaced() {
 
     symlink("circle.csv", place.path("circle.csv")).unwrap();
     let circle = ["curve", "scene.toml", "--csv", "circle.csv"];
-    place
-        .run(&circle)
-        .assert_refused(&["--csv circle.csv: Too many levels of symbolic links"]);
+    place.run(&circle).assert_refused(&["--csv circle.csv: Too many levels of symbolic links"]);
     symlink("nowhere/t.csv", place.path("lost.csv")).unwrap();
     let lost = ["curve", "scene.toml", "--csv", "lost.csv"];
-    place
-        .run(&lost)
-        .assert_refused(&["--csv lost.csv: No such file"]);
+    place.run(&lost).assert_refused(&["--csv lost.csv: No such file"]);
 }
 
 /// A limit on the file size simulates a full disk; the shell ignores its signal.
@@ -193,12 +181,7 @@ fn scenes_have_any_name() {
     for stem in ["my scene", "Schnurrhaar µ 鬍鬚", "-", ".hidden"] {
         let name = format!("{stem}.toml");
         place.write(&name, SCENE);
-        assert!(
-            place
-                .quiet(&["curve", &format!("./{name}")])
-                .out
-                .starts_with(CURVE)
-        );
+        assert!(place.quiet(&["curve", &format!("./{name}")]).out.starts_with(CURVE));
         place.map(&[&format!("./{name}"), "-o", &format!("./{stem}")]);
         let files = [format!("{stem}.exr"), format!("{stem}.png")];
         assert_eq!(names(&place.path(stem)), files);
@@ -229,10 +212,7 @@ fn a_pipe_holds_no_radii() {
     place.write("scene.toml", super::store::SWEEP);
     super::store::good(&place, ".", &["--shard", "1/8"]);
     let root = place.text("scene.zarr/zarr.json");
-    let named = root.replace(
-        "[whisker]",
-        &measured.replace('\n', "\\n").replace('"', "'"),
-    );
+    let named = root.replace("[whisker]", &measured.replace('\n', "\\n").replace('"', "'"));
     assert_ne!(root, named);
     place.write("scene.zarr/zarr.json", &named);
     let refused = "is damaged: its `identity` does not fit";
@@ -260,8 +240,6 @@ fn what_a_user_names_is_read_to_its_end_or_refused() {
     let [scene, table] = [1, 32].map(|most| format!("cannot be read: longer than {most} MiB"));
     for (path, scene, table) in [(".", is_folder, is_folder), ("/dev/zero", &scene, &table)] {
         place.run(&["curve", path]).assert_refused(&[path, scene]);
-        place
-            .run(&["curve", "scene.toml", "--data", path])
-            .assert_refused(&[path, table]);
+        place.run(&["curve", "scene.toml", "--data", path]).assert_refused(&[path, table]);
     }
 }

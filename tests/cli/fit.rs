@@ -39,10 +39,7 @@ fn table_scene_and_document_agree() {
     let fitted = Scene::read(place.path("fitted.toml")).unwrap();
     let whisker = &fitted.whisker;
     let bent = whisker.curvature.unwrap().parabola_per_mm;
-    for (name, value) in [
-        ("tip_radius_um", whisker.tip_radius_um),
-        ("parabola_per_mm", bent),
-    ] {
+    for (name, value) in [("tip_radius_um", whisker.tip_radius_um), ("parabola_per_mm", bent)] {
         assert_eq!(found["values"][name], value);
         let error = found["standard_errors"][name].as_f64().unwrap();
         let line = run.out.lines().find(|line| line.starts_with(name)).unwrap();
@@ -53,49 +50,34 @@ fn table_scene_and_document_agree() {
         let places = words[3].split('.').nth(1).unwrap().len();
         assert_eq!(words[1].split('.').nth(1).unwrap().len(), places);
         let half = 0.5 * 10_f64.powi(-(places as i32)) * (1.0 + 1e-9);
-        assert!(
-            (estimate - value).abs() <= half && (of_error - error).abs() <= half,
-            "{line}"
-        );
+        assert!((estimate - value).abs() <= half && (of_error - error).abs() <= half, "{line}");
         assert!(half < 0.2 * error, "{line}");
         assert!(error > 0.0);
     }
-    assert!(
-        (1.5..2.5).contains(&whisker.tip_radius_um),
-        "{}",
-        whisker.tip_radius_um
-    );
+    assert!((1.5..2.5).contains(&whisker.tip_radius_um), "{}", whisker.tip_radius_um);
     let correlation = &found["correlation"];
     assert_eq!(correlation["tip_radius_um"]["tip_radius_um"], 1.0);
     assert_eq!(
         correlation["tip_radius_um"]["parabola_per_mm"],
         correlation["parabola_per_mm"]["tip_radius_um"]
     );
-    let between = correlation["tip_radius_um"]["parabola_per_mm"]
-        .as_f64()
-        .unwrap();
+    let between = correlation["tip_radius_um"]["parabola_per_mm"].as_f64().unwrap();
     assert!(run.out.contains(&format!(
         "correlation of parabola_per_mm and tip_radius_um: {}\n",
         four_digits(between)
     )));
     let chi_square = found["chi_square"].as_f64().unwrap();
-    assert!(run.out.contains(&format!(
-        "chi-square: {}, 4 degrees of freedom\n",
-        four_digits(chi_square)
-    )));
+    assert!(
+        run.out
+            .contains(&format!("chi-square: {}, 4 degrees of freedom\n", four_digits(chi_square)))
+    );
     let points = found["points"].as_array().unwrap();
     let square = |point: &Value| point["residual_deg"].as_f64().unwrap().powi(2);
     let squares: f64 = points.iter().map(square).sum();
     assert_eq!(points.len(), 6);
-    assert!(
-        (squares / chi_square - 1.0).abs() < 1e-12,
-        "deviations are 1 degree"
-    );
+    assert!((squares / chi_square - 1.0).abs() < 1e-12, "deviations are 1 degree");
     assert!((found["rms_deg"].as_f64().unwrap() - (squares / 6.0).sqrt()).abs() < 1e-12);
-    assert!(
-        run.out
-            .contains("points compared: 6, 0 left out, 0 of another kind than predicted\n")
-    );
+    assert!(run.out.contains("points compared: 6, 0 left out, 0 of another kind than predicted\n"));
 
     // A second fit stays at the fitted scene; equal runs write equal bytes.
     let bytes = place.bytes("fit.json");
@@ -114,15 +96,10 @@ fn standard_output_takes_one_of_them() {
     let free = ["--free", "tip_radius_um"];
     let run = fit(&place, &[&free[..], &["-o", "-"]].concat());
     assert!(Scene::parse(&run.out, "fitted.toml").is_ok(), "{run:?}");
-    let run = fit(
-        &place,
-        &[&free[..], &["--json", "-", "-o", "fitted.toml"]].concat(),
-    );
+    let run = fit(&place, &[&free[..], &["--json", "-", "-o", "fitted.toml"]].concat());
     assert!(serde_json::from_str::<Value>(&run.out).is_ok(), "{run:?}");
     let both = [&FIT[..], &free, &["--json", "-", "-o", "-"]].concat();
-    place
-        .run(&both)
-        .assert_refused(&["--output - and --json -: must be two files"]);
+    place.run(&both).assert_refused(&["--output - and --json -: must be two files"]);
 }
 
 #[test]
@@ -135,15 +112,11 @@ fn what_is_not_determined_is_null() {
     let found = json(&place, "fit.json");
     for name in ["youngs_modulus_gpa", "base_radius_um", "tip_radius_um"] {
         assert!(
-            run.err.contains(&format!(
-                "warning: {name}: not determined by these points\n"
-            )),
+            run.err.contains(&format!("warning: {name}: not determined by these points\n")),
             "{run:?}"
         );
         assert!(
-            run.out
-                .lines()
-                .any(|line| line.starts_with(name) && line.ends_with("not determined")),
+            run.out.lines().any(|line| line.starts_with(name) && line.ends_with("not determined")),
             "{run:?}"
         );
         assert_eq!(found["standard_errors"][name], Value::Null);
@@ -156,10 +129,7 @@ fn what_is_not_determined_is_null() {
 #[test]
 fn limits_and_signs_are_reported() {
     let place = place();
-    place.write(
-        "points.csv",
-        &DATA.replace("49.2", "43").replace("-29.1", "29.1"),
-    );
+    place.write("points.csv", &DATA.replace("49.2", "43").replace("-29.1", "29.1"));
     let run = place.run(&[&FIT[..], &["--free", "pole_radius_mm"]].concat());
     let signs = "warning: 1 of 6 points in points.csv have an angle of the other side's sign: it is positive for cb, negative for cf\n";
     assert!(run.err.contains(signs), "{run:?}");
@@ -169,10 +139,7 @@ fn limits_and_signs_are_reported() {
     let run = fit(&place, &["--free", "pole_radius_mm"]);
     let limit = "warning: pole_radius_mm: 0 is the last value that the scene accepts, so there is no standard error\n";
     assert_eq!(run.err, limit);
-    let line = run
-        .out
-        .lines()
-        .find(|line| line.starts_with("pole_radius_mm"));
+    let line = run.out.lines().find(|line| line.starts_with("pole_radius_mm"));
     assert!(line.unwrap().ends_with(" 0, at its limit"), "{run:?}");
 }
 
@@ -180,10 +147,7 @@ fn limits_and_signs_are_reported() {
 #[test]
 fn a_note_gives_a_start_that_reaches_all_points() {
     let place = place();
-    place.write(
-        "scene.toml",
-        &SCENE.replace("length_mm = 20", "length_mm = 18"),
-    );
+    place.write("scene.toml", &SCENE.replace("length_mm = 20", "length_mm = 18"));
     let free = ["--free", "length_mm,parabola_per_mm,length_mm"];
     let run = fit(&place, &[&free[..], &["-o", "fitted.toml"]].concat());
     let note =
@@ -192,10 +156,7 @@ fn a_note_gives_a_start_that_reaches_all_points() {
     assert!(run.err.contains(" instead of 18\n"), "{run:?}");
     assert_eq!(run.out.matches("\nlength_mm").count(), 1, "{run:?}");
     let beside = place.run(&["curve", "fitted.toml", "--data", "points.csv"]);
-    assert!(
-        beside.err.contains("points compared: 6, 0 left out"),
-        "{beside:?}"
-    );
+    assert!(beside.err.contains("points compared: 6, 0 left out"), "{beside:?}");
 }
 
 #[test]
@@ -248,19 +209,13 @@ fn wrong_input_is_refused_before_any_file_is_made() {
     place
         .run(&words("fit scene.toml --free taper --data nowhere.csv"))
         .assert_refused(&["nowhere.csv: cannot be read"]);
-    place.write(
-        "sweep.toml",
-        &SCENE.replace("[grid]", "[grid]\ncurvature_per_mm = [0.01, 0.02]"),
-    );
+    place.write("sweep.toml", &SCENE.replace("[grid]", "[grid]\ncurvature_per_mm = [0.01, 0.02]"));
     for command in [&["fit", "--free", "taper"][..], &["curve"]] {
         let run = place.run(&[command, &["sweep.toml", "--data", "points.csv"]].concat());
         run.assert_refused(&["grid.curvature_per_mm: the scene sweeps 2 whiskers"]);
     }
     curve(&place, &["--corner"]).assert_refused(&["--data", "--corner"]);
-    assert_eq!(
-        names(&place.path("")),
-        ["points.csv", "scene.toml", "sweep.toml"]
-    );
+    assert_eq!(names(&place.path("")), ["points.csv", "scene.toml", "sweep.toml"]);
 }
 
 /// A point with a missing number is a row with its reason, and the others are fitted as without it.
@@ -271,10 +226,7 @@ fn points_with_a_missing_number_are_left_out() {
     let options = ["--free", "tip_radius_um", "--json", "fit.json"];
     fit(&place, &options);
     let whole = json(&place, "fit.json");
-    place.write(
-        "points.csv",
-        &format!("{}\n,cb,,12\n,cf,9,NaN\n", points.trim_end()),
-    );
+    place.write("points.csv", &format!("{}\n,cb,,12\n,cf,9,NaN\n", points.trim_end()));
     let run = fit(&place, &options);
     assert!(
         run.err.contains(
@@ -287,14 +239,7 @@ fn points_with_a_missing_number_are_left_out() {
     assert_eq!(found["left_out"], 0);
     let rows = found["points"].as_array().unwrap();
     let reasons: Vec<&Value> = rows.iter().map(|row| &row["reason"]).collect();
-    assert_eq!(
-        reasons[5..],
-        [
-            &Value::Null,
-            &Value::from("missing"),
-            &Value::from("missing")
-        ]
-    );
+    assert_eq!(reasons[5..], [&Value::Null, &Value::from("missing"), &Value::from("missing")]);
     assert_eq!(rows[6]["measured_deg"], 12.0);
     assert_eq!(rows[7]["distance_mm"], 9.0);
     let beside = place.run(&["curve", "scene.toml", "--data", "points.csv"]);
@@ -338,20 +283,12 @@ fn points_of_whiskers_share_the_fitted_values() {
     let fitted = Scene::read(place.path("fitted.toml")).unwrap();
     assert_eq!(fitted.whisker.tip_radius_um, tip_um);
     assert_eq!(fitted.table_rows(), start.table_rows());
-    fit(
-        &place,
-        &[&free[..], &files, &["--at", "whisker=C2"]].concat(),
-    );
-    assert_eq!(
-        json(&place, "fit.json")["points"].as_array().unwrap().len(),
-        4
-    );
+    fit(&place, &[&free[..], &files, &["--at", "whisker=C2"]].concat());
+    assert_eq!(json(&place, "fit.json")["points"].as_array().unwrap().len(), 4);
     let curve = ["curve", "scene.toml", "--data", "points.csv"];
     let beside = place.run(&[&curve[..], &["--at", "whisker=C1"]].concat());
     assert_eq!((beside.code, beside.out.lines().count()), (Some(0), 5));
-    place
-        .run(&curve)
-        .assert_refused(&["curve --data needs one; select it by --at whisker=VALUE"]);
+    place.run(&curve).assert_refused(&["curve --data needs one; select it by --at whisker=VALUE"]);
     place
         .run(&["reproduce", "figures", "--fig4d", "points.csv"])
         .assert_refused(&["--fig4d points.csv: has a column whisker"]);

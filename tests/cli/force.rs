@@ -21,11 +21,7 @@ fn both_methods_agree_on_the_example() {
     place.write("f.csv", include_str!("../../scenes/frames.csv"));
     let lever = force(&place, &[]);
     let model = force(&place, &["--model"]);
-    assert_eq!(
-        (lever.code, model.code),
-        (Some(0), Some(0)),
-        "{lever:?} {model:?}"
-    );
+    assert_eq!((lever.code, model.code), (Some(0), Some(0)), "{lever:?} {model:?}");
     let forces = |run: &super::Run| -> Vec<f64> {
         let rows = cells(&run.out, TABLE);
         rows.iter().map(|row| row[3].parse().unwrap()).collect()
@@ -37,11 +33,7 @@ fn both_methods_agree_on_the_example() {
         assert!((one - other).abs() < 1e-3, "{one} {other}");
     }
     let plotted = force(&place, &["--plot", "f.svg"]);
-    assert_eq!(
-        (plotted.code, &*plotted.out),
-        (Some(0), "f.svg\n"),
-        "{plotted:?}"
-    );
+    assert_eq!((plotted.code, &*plotted.out), (Some(0), "f.svg\n"), "{plotted:?}");
     let svg = place.text("f.svg");
     assert!(
         svg.contains(">contact force (\u{b5}N)<")
@@ -49,10 +41,7 @@ fn both_methods_agree_on_the_example() {
     );
     // Frames have no standard deviations yet.
     assert!(!svg.contains("standard deviation"), "{svg}");
-    place.write(
-        "sd.toml",
-        &format!("{SCENE}\n[uncertainty]\ncurvature_sd_per_mm = 1e-3\n"),
-    );
+    place.write("sd.toml", &format!("{SCENE}\n[uncertainty]\ncurvature_sd_per_mm = 1e-3\n"));
     place.quiet(&["force", "sd.toml", "--frames", "f.csv", "--plot", "sd.svg"]);
     let svg = place.text("sd.svg");
     assert_eq!(svg.matches(">\u{b1} standard deviation<").count(), 1);
@@ -62,10 +51,7 @@ fn both_methods_agree_on_the_example() {
 fn wrong_frames_are_refused() {
     let place = Place::with(SCENE);
     for (rows, said) in [
-        (
-            "0,x,2,15,4,30",
-            "f.csv:2: curvature_per_mm = x: must be a number between -1e6 and 1e6",
-        ),
+        ("0,x,2,15,4,30", "f.csv:2: curvature_per_mm = x: must be a number between -1e6 and 1e6"),
         (
             "0,0.03,20,15,4,30",
             "at_arc_length_mm = 20: must be a number of at least 0 and less than 20",
@@ -78,13 +64,7 @@ fn wrong_frames_are_refused() {
         place.write("f.csv", &format!("{HEADER}\n{rows}\n"));
         force(&place, &[]).assert_refused(&[said]);
     }
-    place.write(
-        "f.csv",
-        &format!(
-            "{}\n0,0.03,2,15,4\n",
-            HEADER.replace(",contact_angle_deg", "")
-        ),
-    );
+    place.write("f.csv", &format!("{}\n0,0.03,2,15,4\n", HEADER.replace(",contact_angle_deg", "")));
     force(&place, &[]).assert_refused(&["needed time_s", "contact_angle_deg"]);
     let model = force(&place, &["--model"]);
     assert_eq!(model.code, Some(0), "{model:?}");
@@ -125,12 +105,7 @@ fn frames_with_a_missing_number_have_a_reason() {
 #[test]
 fn a_baseline_is_reported_and_used() {
     let place = Place::with(SCENE);
-    let rows = [
-        "0,0.011,2,,,",
-        "0.05,0.013,2,,,",
-        "0.1,0.012,2,,,",
-        "0.2,0.03,2,15,4,30",
-    ];
+    let rows = ["0,0.011,2,,,", "0.05,0.013,2,,,", "0.1,0.012,2,,,", "0.2,0.03,2,15,4,30"];
     place.write("f.csv", &format!("{HEADER}\n{}\n", rows.join("\n")));
     let plain = force(&place, &[]);
     let sds = |run: &super::Run| -> Vec<bool> {
@@ -140,18 +115,8 @@ fn a_baseline_is_reported_and_used() {
     assert_eq!((sds(&plain), &*plain.err), (vec![false; 4], ""));
     let spanned = force(&place, &["--baseline", "0s..100ms"]);
     assert_eq!(spanned.code, Some(0), "{spanned:?}");
-    assert!(
-        spanned
-            .err
-            .contains("baseline of 3 frames without contact: "),
-        "{spanned:?}"
-    );
-    assert!(
-        spanned
-            .err
-            .contains("; the scatter of a frame is 0.001 per mm"),
-        "{spanned:?}"
-    );
+    assert!(spanned.err.contains("baseline of 3 frames without contact: "), "{spanned:?}");
+    assert!(spanned.err.contains("; the scatter of a frame is 0.001 per mm"), "{spanned:?}");
     assert_eq!(sds(&spanned), [false, false, false, true]);
     // The column needs no empty cells.
     let with_column: Vec<String> = rows
@@ -159,10 +124,7 @@ fn a_baseline_is_reported_and_used() {
         .zip([0, 0, 0, 1])
         .map(|(row, contact)| format!("{},{contact}", row.replace(",,,", ",9,9,9")))
         .collect();
-    place.write(
-        "f.csv",
-        &format!("{HEADER},contact\n{}\n", with_column.join("\n")),
-    );
+    place.write("f.csv", &format!("{HEADER},contact\n{}\n", with_column.join("\n")));
     let column = force(&place, &[]);
     assert_eq!((&column.out, &column.err), (&spanned.out, &spanned.err));
     // A contact that is not known, or whose position is not, is missing.
@@ -178,26 +140,10 @@ fn a_baseline_is_reported_and_used() {
     let reasons: Vec<&str> = reasons.iter().map(|row| *row.last().unwrap()).collect();
     assert_eq!(reasons, ["", "", "", "", "missing", "missing"]);
     for (text, options, said) in [
-        (
-            "0,0.01,2,,,,0",
-            &["--baseline", "0..1"][..],
-            "f.csv: has 1 frames without contact",
-        ),
-        (
-            "0,0.01,2,1,1,1,0.5",
-            &[],
-            "contact = 0.5: must be 0 or 1, or empty where it is missing",
-        ),
-        (
-            "0,0.01,2,,,,0",
-            &["--baseline", "1"],
-            "must be a span of time, such as 0s..0.1s",
-        ),
-        (
-            "0,0.01,2,,,,0",
-            &["--baseline", "1..0"],
-            "must be a span of time, such as 0s..0.1s",
-        ),
+        ("0,0.01,2,,,,0", &["--baseline", "0..1"][..], "f.csv: has 1 frames without contact"),
+        ("0,0.01,2,1,1,1,0.5", &[], "contact = 0.5: must be 0 or 1, or empty where it is missing"),
+        ("0,0.01,2,,,,0", &["--baseline", "1"], "must be a span of time, such as 0s..0.1s"),
+        ("0,0.01,2,,,,0", &["--baseline", "1..0"], "must be a span of time, such as 0s..0.1s"),
         (
             "0,0.01,2,,,,0",
             &["--baseline", "0..1mm"],
@@ -220,12 +166,7 @@ fn a_baseline_is_reported_and_used() {
 fn a_baseline_leaves_out_lost_frames() {
     let place = Place::with(SCENE);
     let rows = |lost: &str| {
-        let rows = [
-            "0,0.011,2,,,,0",
-            lost,
-            "0.1,0.013,2,,,,0",
-            "0.2,0.03,2,15,4,30,1",
-        ];
+        let rows = ["0,0.011,2,,,,0", lost, "0.1,0.013,2,,,,0", "0.2,0.03,2,15,4,30,1"];
         format!("{HEADER},contact\n{}\n", rows.join("\n"))
     };
     for lost in ["0.05,,,,,,", "0.05,0.02,2,,,,NA", "0.05,0.02,2,15,4,30,"] {
@@ -279,16 +220,9 @@ fn a_scene_gives_standard_deviations_of_frames() {
         let run = force(&place, options);
         assert_eq!(run.code, Some(0), "{run:?}");
         let cells = cells(&run.out, TABLE);
-        cells[0][9..13]
-            .iter()
-            .map(|cell| cell.parse().unwrap())
-            .collect()
+        cells[0][9..13].iter().map(|cell| cell.parse().unwrap()).collect()
     };
-    let keys = [
-        "curvature_sd_per_mm = 1e-3",
-        "contact_sd_mm = 0.1",
-        "angle_sd_deg = 2",
-    ];
+    let keys = ["curvature_sd_per_mm = 1e-3", "contact_sd_mm = 0.1", "angle_sd_deg = 2"];
     for key in keys {
         let found = sd(key, &[]);
         assert!(found.iter().all(|sd| *sd > 0.0), "{key}: {found:?}");

@@ -18,10 +18,7 @@ const FILM: [&str; 8] = [
 
 fn film() -> Place {
     let place = Place::with(SCENE);
-    for (name, shipped) in [
-        ("film.csv", "deeplabcut.csv"),
-        ("rows.csv", "measurements.csv"),
-    ] {
+    for (name, shipped) in [("film.csv", "deeplabcut.csv"), ("rows.csv", "measurements.csv")] {
         let text = fs::read_to_string(root().join("scenes").join(shipped)).unwrap();
         place.write(name, &text);
     }
@@ -64,10 +61,7 @@ fn frames_are_those_that_force_and_whisk_read() {
     );
     place.write("traced.toml", &scene);
     let run = place.good(&words("shape traced.toml --distance 15 --push-angle 0"));
-    assert!(
-        run.err.contains("note: whisker.rest: curvature of degree "),
-        "{run:?}"
-    );
+    assert!(run.err.contains("note: whisker.rest: curvature of degree "), "{run:?}");
 
     let run = place.good(&["force", "scene.toml", "--frames", "frames.csv", "--model"]);
     // The baseline is that of the frames without contact.
@@ -83,18 +77,11 @@ fn frames_are_those_that_force_and_whisk_read() {
 #[test]
 fn detachments_are_those_that_fit_reads() {
     let place = film();
-    let words = [
-        &FILM[..],
-        &["--fps", "500", "--detachments", "-o", "points.csv"],
-    ]
-    .concat();
+    let words = [&FILM[..], &["--fps", "500", "--detachments", "-o", "points.csv"]].concat();
     let run = place.run(&words);
     assert_eq!((run.code, &*run.out), (Some(0), "points.csv\n"), "{run:?}");
     let table = place.text("points.csv");
-    assert!(
-        table.starts_with("side,distance_mm,push_angle_deg,time_s\ncb,15."),
-        "{table}"
-    );
+    assert!(table.starts_with("side,distance_mm,push_angle_deg,time_s\ncb,15."), "{table}");
     let run = place.good(&["curve", "scene.toml", "--data", "points.csv"]);
     assert!(run.out.contains("slip-off"), "{run:?}");
     // A pole that is not reached leaves none. Curves of a given degree take a tenth of the time.
@@ -108,10 +95,7 @@ fn detachments_are_those_that_fit_reads() {
         ),
         "{run:?}"
     );
-    assert!(
-        !run.err.contains("contacts that give no detachment"),
-        "{run:?}"
-    );
+    assert!(!run.err.contains("contacts that give no detachment"), "{run:?}");
 }
 
 /// A gap hides when a contact begins or ends, as do the ends of the film. Such contacts are counted.
@@ -119,22 +103,12 @@ fn detachments_are_those_that_fit_reads() {
 fn contacts_without_first_touch_or_end_are_counted() {
     let whole = include_str!("../../scenes/deeplabcut.csv");
     let place = film();
-    let words = [
-        &FILM[..],
-        &["--fps", "500", "--detachments", "-o", "points.csv"],
-    ]
-    .concat();
+    let words = [&FILM[..], &["--fps", "500", "--detachments", "-o", "points.csv"]].concat();
     // First touch is in frame 12, and the last contact in frame 43.
-    for lost in [
-        &[11, 12][..],
-        &[44, 45],
-        &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11],
-    ] {
+    for lost in [&[11, 12][..], &[44, 45], &[0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11]] {
         let is_kept = |line: &&str| {
             let number = line.split(',').next().unwrap_or_default();
-            number
-                .parse()
-                .map_or(true, |frame: u32| !lost.contains(&frame))
+            number.parse().map_or(true, |frame: u32| !lost.contains(&frame))
         };
         let kept: Vec<&str> = whole.lines().filter(is_kept).collect();
         place.write("film.csv", &kept.join("\n"));
@@ -157,9 +131,7 @@ fn measurements_of_whisk_and_points_are_read() {
     assert!(run.out.contains("\n25,0.05,,,"), "{run:?}");
     place.write("a.csv", "0,0\n10,1\n20,3\n30,6\n40,10\n");
     place.write("b.csv", "0,0\n10,2\n20,5\n30,9\n40,14\n");
-    let run = place.run(&words(
-        "import a.csv b.csv --mm-per-pixel 0.1 --fps 100 --degree 0",
-    ));
+    let run = place.run(&words("import a.csv b.csv --mm-per-pixel 0.1 --fps 100 --degree 0"));
     assert_eq!((run.code, run.out.lines().count()), (Some(0), 3), "{run:?}");
 }
 
@@ -185,32 +157,16 @@ fn bad_imports_are_refused() {
             vec!["--mm-per-pixel", "0", "--fps", "500"],
             "--mm-per-pixel 0: must be a number between 1e-9 and 1e9",
         ),
-        (
-            "film.csv",
-            vec!["--mm-per-pixel", "0.05px", "--fps", "500"],
-            "unit px: must be mm",
-        ),
+        ("film.csv", vec!["--mm-per-pixel", "0.05px", "--fps", "500"], "unit px: must be mm"),
         ("no.csv", scaled(&[]), "no.csv: cannot be read:"),
         (
             "film.nwb",
             scaled(&[]),
             "film.nwb: is an HDF5 file: NWB files are read in Python, by wm.read_tracking",
         ),
-        (
-            "film.csv",
-            scaled(&["--format", "whisk"]),
-            "film.csv:2: found scorer",
-        ),
-        (
-            "film.csv",
-            scaled(&["--pole", "pole"]),
-            "--contact-within <MM>",
-        ),
-        (
-            "film.csv",
-            scaled(&["--contact-within", "1"]),
-            "--pole <X,Y/NAME>",
-        ),
+        ("film.csv", scaled(&["--format", "whisk"]), "film.csv:2: found scorer"),
+        ("film.csv", scaled(&["--pole", "pole"]), "--contact-within <MM>"),
+        ("film.csv", scaled(&["--contact-within", "1"]), "--pole <X,Y/NAME>"),
         ("film.csv", scaled(&["--detachments"]), "--pole <X,Y/NAME>"),
         (
             "film.csv",
@@ -227,11 +183,7 @@ fn bad_imports_are_refused() {
             curved(&["--points", "base,tip"]),
             "film.csv: has no frame with a curve: must have at least one with 5 points along a smooth curve, the base among them and all within ",
         ),
-        (
-            "film.csv",
-            scaled(&["--follicle", "12"]),
-            "must be X,Y in pixels",
-        ),
+        ("film.csv", scaled(&["--follicle", "12"]), "must be X,Y in pixels"),
         (
             "film.csv",
             curved(&["--curvature-at", "30"]),
@@ -242,16 +194,8 @@ fn bad_imports_are_refused() {
             curved(&["--zero", "9s"]),
             "--zero 9: must be the time of a frame with a whisker, between 0.002 and 0.084 s in steps of 1/500 s",
         ),
-        (
-            "film.csv",
-            scaled(&["--mirror", "maybe"]),
-            "must be yes or no",
-        ),
-        (
-            "film.csv",
-            scaled(&["--degree", "7"]),
-            "must be a whole number between 0 and 6",
-        ),
+        ("film.csv", scaled(&["--mirror", "maybe"]), "must be yes or no"),
+        ("film.csv", scaled(&["--degree", "7"]), "must be a whole number between 0 and 6"),
         (
             "film.csv",
             curved(&["--shape", "56"]),
@@ -267,11 +211,7 @@ fn bad_imports_are_refused() {
             scaled(&["--shape", "4"]),
             "--shape 4: must be left out: measurements of whisk have no points",
         ),
-        (
-            "film.csv",
-            curved(&["-o", "film.csv"]),
-            "is the input film.csv; name another file",
-        ),
+        ("film.csv", curved(&["-o", "film.csv"]), "is the input film.csv; name another file"),
     ] {
         let run = import(file, &more);
         assert_eq!(run.code, Some(2), "{more:?}: {run:?}");
@@ -282,8 +222,7 @@ fn bad_imports_are_refused() {
 /// Counts the frames of a run by their contact.
 fn contacts(out: &str, contact: &str) -> usize {
     let rows = out.lines().skip(1);
-    rows.filter(|row| row.split(',').nth(7) == Some(contact))
-        .count()
+    rows.filter(|row| row.split(',').nth(7) == Some(contact)).count()
 }
 
 /// The pole of the shipped film has a radius of 0.25 mm.
@@ -294,23 +233,16 @@ fn a_film_that_does_not_fit_its_pole_has_warnings_and_no_contact_of_0() {
     let run = place.run(&words);
     assert!(!run.err.contains("warning: "), "{run:?}");
     assert_eq!([contacts(&run.out, "0"), contacts(&run.out, "1")], [23, 30]);
-    let small = words
-        .iter()
-        .map(|word| if *word == "0.35mm" { "0.15mm" } else { *word });
+    let small = words.iter().map(|word| if *word == "0.35mm" { "0.15mm" } else { *word });
     let small = place.run(&small.collect::<Vec<_>>());
     let why = "frames, the whisker is bent at the pole, but is 0.25 mm from its centre (median), more than 0.15 mm";
     assert!(small.err.contains("warning: in "), "{small:?}");
     assert!(small.err.contains(why), "{small:?}");
     // The two lightest pushes bend the whisker by less than the errors of points.
-    assert_eq!(
-        [contacts(&small.out, "0"), contacts(&small.out, "1")],
-        [25, 0]
-    );
+    assert_eq!([contacts(&small.out, "0"), contacts(&small.out, "1")], [25, 0]);
     let names = "base,w1,w2,w3,w4,w5,w6,w7,w8,w9,w10,w11,w12,tip";
     let aside = [&words[..], &["--points", names, "--degree", "1"]].concat();
-    let aside = aside
-        .iter()
-        .map(|word| if *word == "pole" { "300,900" } else { *word });
+    let aside = aside.iter().map(|word| if *word == "pole" { "300,900" } else { *word });
     let aside = place.run(&aside.collect::<Vec<_>>());
     let why = "warning: no frame comes near the pole: ";
     assert!(aside.err.contains(why), "{aside:?}");

@@ -46,11 +46,7 @@ fn race(place: &Place, folder: &str, scenes: [&str; 2], options: [&str; 2]) -> [
 /// Checks that one run completes, and that the other one is refused and names what differs.
 fn assert_one_succeeds(place: &Place, folder: &str, runs: &[Run; 2], said: &str) {
     let [one, other] = runs;
-    let (winner, loser) = if one.code == Some(0) {
-        (one, other)
-    } else {
-        (other, one)
-    };
+    let (winner, loser) = if one.code == Some(0) { (one, other) } else { (other, one) };
     assert_eq!(winner.code, Some(0), "{runs:?}");
     loser.assert_said(2, said);
     place.good(&["status", &format!("{folder}/scene.zarr"), "--verify"]);
@@ -69,12 +65,7 @@ fn of_two_runs_that_create_a_store_differently_one_succeeds() {
     for number in 0..50 {
         let folder = format!("scenes-{number}");
         let runs = race(&place, &folder, [a, b], [exact; 2]);
-        assert_one_succeeds(
-            &place,
-            &folder,
-            &runs,
-            "differs in `scene`: `taper = [0, 0.",
-        );
+        assert_one_succeeds(&place, &folder, &runs, "differs in `scene`: `taper = [0, 0.");
         let folder = format!("tolerances-{number}");
         let runs = race(&place, &folder, [a; 2], [exact, "--tolerance=1e-3deg"]);
         assert_one_succeeds(&place, &folder, &runs, "differs in `tolerances`: ");
@@ -106,24 +97,13 @@ fn a_store_that_is_moved_or_removed_is_not_begun_twice() {
     let child = begun(&place, "out", 1);
     fs::rename(place.path("out"), place.path("moved")).unwrap();
     fs::create_dir(place.path("other")).unwrap();
-    place.write(
-        "other/scene.toml",
-        &SWEEP.replace("[0, 0.5, 1]", "[0, 0.6, 1]"),
-    );
-    let arguments = [
-        &["map", "other/scene.toml"],
-        &MAP[2..],
-        &["out", "--shard=0/8"],
-    ]
-    .concat();
+    place.write("other/scene.toml", &SWEEP.replace("[0, 0.5, 1]", "[0, 0.6, 1]"));
+    let arguments = [&["map", "other/scene.toml"], &MAP[2..], &["out", "--shard=0/8"]].concat();
     place.good(&arguments);
     let run = Run::of(&child.wait_with_output().unwrap());
     run.assert_said(1, "error: ");
     let run = place.run(&["status", "out/scene.zarr", "--verify"]);
-    run.assert_said(
-        1,
-        "7 blocks are missing; `whiskmap map --format zarr --resume`",
-    );
+    run.assert_said(1, "7 blocks are missing; `whiskmap map --format zarr --resume`");
 }
 
 #[test]
@@ -142,10 +122,7 @@ fn a_failed_extract_leaves_no_store() {
     fs::create_dir(place.path("full.zarr")).unwrap();
     place.write("full.zarr/notes.txt", "of somebody");
     let run = place.run(&["extract", "out/scene.zarr", "-o", "full.zarr"]);
-    run.assert_said(
-        2,
-        "full.zarr: exists, and is neither a store nor an empty folder",
-    );
+    run.assert_said(2, "full.zarr: exists, and is neither a store nor an empty folder");
     assert_eq!(super::names(&place.path("full.zarr")), ["notes.txt"]);
 }
 
@@ -153,11 +130,7 @@ fn a_failed_extract_leaves_no_store() {
 #[cfg(unix)]
 fn in_little_memory(place: &Place, arguments: &[&str]) -> Run {
     let mut shell = Command::new("sh");
-    shell.args([
-        "-c",
-        "ulimit -v 3000000; exec \"$0\" \"$@\"",
-        env!("CARGO_BIN_EXE_whiskmap"),
-    ]);
+    shell.args(["-c", "ulimit -v 3000000; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_whiskmap")]);
     let output = shell.args(arguments).current_dir(place.path("")).output();
     Run::of(&output.unwrap())
 }
@@ -180,14 +153,10 @@ fn sizes_that_a_store_claims_are_not_allocated() {
     };
     let path = place.path("huge.zarr");
     let store = whiskmap::store::ZarrStore::join(&path, &scene, &about, false).unwrap();
-    store
-        .begin(&whiskmap::store::TemporaryFiles::default())
-        .unwrap();
+    store.begin(&whiskmap::store::TemporaryFiles::default()).unwrap();
     for output in ["x.csv", "x.npy", "x.zarr"] {
-        let run = in_little_memory(
-            &place,
-            &["extract", "huge.zarr", "--channel=regime", "-o", output],
-        );
+        let run =
+            in_little_memory(&place, &["extract", "huge.zarr", "--channel=regime", "-o", output]);
         run.assert_said(2, "error: huge.zarr is not finished: ");
     }
     let run = in_little_memory(&place, &["status", "huge.zarr"]);

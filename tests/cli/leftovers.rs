@@ -45,9 +45,7 @@ fn only_leftovers_are_removed() {
     place.write(&exact("1"), "");
     let mut kept = names(&place.path(""));
     kept.retain(|name| ![exact("1"), exact("3")].contains(name));
-    place.quiet(&words(
-        "shape scene.toml --distance=9 --push-angle=1 --csv=t.csv",
-    ));
+    place.quiet(&words("shape scene.toml --distance=9 --push-angle=1 --csv=t.csv"));
     fs::remove_file(place.path("t.csv")).unwrap();
     assert_eq!(names(&place.path("")), kept);
     assert!(running.path().exists());

@@ -11,12 +11,7 @@ fn a_state_of_shape_comes_back() {
     ));
     let table = |text: &str, name: &str| -> f64 {
         let mut lines = text.lines().map(|line| line.split(',').collect::<Vec<_>>());
-        let at = lines
-            .next()
-            .unwrap()
-            .iter()
-            .position(|column| *column == name)
-            .unwrap();
+        let at = lines.next().unwrap().iter().position(|column| *column == name).unwrap();
         lines.next().unwrap()[at].parse().unwrap()
     };
     let state = place.text("state.csv");
@@ -50,25 +45,15 @@ fn readings_of_a_file_have_rows_and_a_picture() {
         "locate scene.toml --readings r.csv --moment-sd 1nNm --force-sd 0.1uN --csv out.csv \
          --plot out.svg",
     ));
-    assert_eq!(
-        (run.code, &*run.out),
-        (Some(0), "out.csv\nout.svg\n"),
-        "{run:?}"
-    );
-    assert!(
-        run.err.contains("columns that are not used: day"),
-        "{run:?}"
-    );
+    assert_eq!((run.code, &*run.out), (Some(0), "out.csv\nout.svg\n"), "{run:?}");
+    assert!(run.err.contains("columns that are not used: day"), "{run:?}");
     assert!(run.err.contains("4 of 5 readings have no state"), "{run:?}");
     let table = place.text("out.csv");
     for end in [",incomplete", ",no-load", ",no-state"] {
         assert!(table.lines().any(|line| line.ends_with(end)), "{table}");
     }
     let svg = place.text("out.svg");
-    assert!(
-        svg.contains(">at rest<") && svg.contains(">one state<"),
-        "{svg}"
-    );
+    assert!(svg.contains(">at rest<") && svg.contains(">one state<"), "{svg}");
 }
 
 /// A cylinder's moment and axial force are dependent; other pairs have at least the state itself.
@@ -79,29 +64,17 @@ fn a_map_counts_the_states_that_share_numbers() {
     let (axes, _) = straight.split_once("[grid]").unwrap();
     let grid = "[grid]\npush_angle_deg = { from = -60, to = 60, count = 200 }\ndistance_mm = { from = 1, to = 22, count = 60 }\n";
     let place = Place::with(&format!("{axes}{grid}"));
-    let run = place.run(&words(
-        "locate scene.toml --map --csv map.csv --plot map.svg",
-    ));
-    assert_eq!(
-        (run.code, &*run.out),
-        (Some(0), "map.csv\nmap.svg\n"),
-        "{run:?}"
-    );
+    let run = place.run(&words("locate scene.toml --map --csv map.csv --plot map.svg"));
+    assert_eq!((run.code, &*run.out), (Some(0), "map.csv\nmap.svg\n"), "{run:?}");
     let table = place.text("map.csv");
     let header = table.lines().next().unwrap();
     assert!(header.starts_with("distance_mm,side,push_angle_deg,arc_length_mm,moment_x_states"));
-    let rows = table
-        .lines()
-        .skip(1)
-        .map(|line| line.split(',').collect::<Vec<_>>());
+    let rows = table.lines().skip(1).map(|line| line.split(',').collect::<Vec<_>>());
     let counts = rows.map(|row| [4, 6, 8].map(|column| row[column].parse::<usize>().unwrap()));
     let counts: Vec<[usize; 3]> = counts.collect();
     assert!(counts.len() > 500, "{table}");
     for [moment_x, moment_y, force] in counts {
-        assert!(
-            moment_x == 0 && moment_y > 0 && force > 0,
-            "{moment_x} {moment_y} {force}"
-        );
+        assert!(moment_x == 0 && moment_y > 0 && force > 0, "{moment_x} {moment_y} {force}");
     }
     let svg = place.text("map.svg");
     for text in [
@@ -112,10 +85,8 @@ fn a_map_counts_the_states_that_share_numbers() {
     ] {
         assert!(svg.contains(text), "{text}: {svg}");
     }
-    place.write(
-        "scene.toml",
-        &format!("{axes}[grid]\npush_angle_deg = [10]\ndistance_mm = [30]\n"),
-    );
+    place
+        .write("scene.toml", &format!("{axes}[grid]\npush_angle_deg = [10]\ndistance_mm = [30]\n"));
     place
         .run(&["locate", "scene.toml", "--map"])
         .assert_refused(&["--map: no distance and push angle of the grid has a stable state"]);
@@ -130,10 +101,7 @@ fn bad_readings_are_refused() {
             &["--base-moment", "60"][..],
             "--base-moment 60: must come with another of --base-moment, --base-force-x and --base-force-y",
         ),
-        (
-            &["--base-moment", "60mm", "--base-force-x", "1"],
-            "unit mm: must be nNm",
-        ),
+        (&["--base-moment", "60mm", "--base-force-x", "1"], "unit mm: must be nNm"),
         (
             &["--base-moment", "1e19", "--base-force-x", "1"],
             "must be between -1e18 nNm and 1e18 nNm",
@@ -142,14 +110,8 @@ fn bad_readings_are_refused() {
             &["--base-moment", "1", "--base-force-x", "-1e19"],
             "must be between -1e18 uN and 1e18 uN",
         ),
-        (
-            &words("--base-moment 1 --base-force-x 1 --angle 361"),
-            "must be between -360",
-        ),
-        (
-            &words("--base-moment 1 --base-force-x 1 --moment-sd 1"),
-            "--force-sd",
-        ),
+        (&words("--base-moment 1 --base-force-x 1 --angle 361"), "must be between -360"),
+        (&words("--base-moment 1 --base-force-x 1 --moment-sd 1"), "--force-sd"),
         (
             &words("--base-moment 1 --base-force-x 1 --moment-sd 0 --force-sd 1"),
             "must be more than 0",

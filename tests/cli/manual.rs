@@ -20,13 +20,7 @@ fn completed(place: &Place, line: &[&str]) -> Vec<String> {
         words.join(" ")
     );
     let mut bash = std::process::Command::new("bash");
-    let run = Run::of(
-        &bash
-            .args(["-c", &script])
-            .current_dir(place.path(""))
-            .output()
-            .unwrap(),
-    );
+    let run = Run::of(&bash.args(["-c", &script]).current_dir(place.path("")).output().unwrap());
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
     run.out.lines().map(str::to_owned).collect()
 }
@@ -38,10 +32,7 @@ fn bash_completes_commands_options_and_values() {
     let run = place.quiet(&["completions", "bash"]);
     place.write("whiskmap.bash", &run.out);
     assert_eq!(completed(&place, &["whiskmap", "ext"]), ["extract"]);
-    assert_eq!(
-        completed(&place, &["whiskmap", "map", "--engi"]),
-        ["--engine"]
-    );
+    assert_eq!(completed(&place, &["whiskmap", "map", "--engi"]), ["--engine"]);
     let engines = completed(&place, &["whiskmap", "map", "--engine", ""]);
     assert_eq!(engines, ["auto", "cpu", "spectral", "gpu"]);
 }
@@ -51,10 +42,7 @@ fn other_shells_have_every_command() {
     for shell in ["elvish", "fish", "powershell", "zsh"] {
         let run = place().run(&["completions", shell]);
         assert_eq!((run.code, &*run.err), (Some(0), ""), "{shell}");
-        assert!(
-            run.out.contains("extract") && run.out.contains("tolerance"),
-            "{shell}"
-        );
+        assert!(run.out.contains("extract") && run.out.contains("tolerance"), "{shell}");
     }
     let run = place().run(&["completions", "cmd"]);
     run.assert_refused(&["invalid value 'cmd'", "bash, elvish, fish, powershell, zsh"]);
@@ -64,12 +52,7 @@ fn other_shells_have_every_command() {
 fn manual_pages_have_options_and_columns() {
     let run = place().run(&["man", "curve"]);
     assert_eq!((run.code, &*run.err), (Some(0), ""), "{run:?}");
-    for part in [
-        ".TH whiskmap-curve 1",
-        "\\-\\-corner",
-        "pole_distance_mm",
-        "scenes/cone.toml",
-    ] {
+    for part in [".TH whiskmap-curve 1", "\\-\\-corner", "pole_distance_mm", "scenes/cone.toml"] {
         assert!(run.out.contains(part), "no {part}: {run:?}");
     }
     let run = place().run(&["man"]);
@@ -86,9 +69,7 @@ fn every_command_has_its_description() {
     let of_command =
         |line: &&str| line.contains("__fish_whiskmap_needs_command") && line.contains(" -a \"");
     let lines = run.out.lines().filter(of_command);
-    let described = lines
-        .filter_map(|line| line.split_once(" -d '"))
-        .map(|(_, text)| text);
+    let described = lines.filter_map(|line| line.split_once(" -d '")).map(|(_, text)| text);
     let mut described: Vec<&str> = described.collect();
     let count = described.len();
     described.sort_unstable();

@@ -57,9 +57,8 @@ fn the_picture_is_that_of_the_map_of_the_run() {
             }
         });
         let map = ["map", "scene.toml", "--engine=cpu"];
-        let runs: Vec<_> = (0..8)
-            .map(|_| (place.run(&map), fs::read(place.path("outputs/scene.png"))))
-            .collect();
+        let runs: Vec<_> =
+            (0..8).map(|_| (place.run(&map), fs::read(place.path("outputs/scene.png")))).collect();
         is_done.store(true, Ordering::Relaxed);
         for (run, picture) in runs {
             assert_eq!(run.code, Some(0), "{run:?}");
@@ -98,10 +97,7 @@ fn a_map_replaces_the_one_before_it() {
     place.write("scene.toml", &SCENE.replace("count = 24", "count = 12"));
     place.map(&["scene.toml", "-o", "."]);
     assert!(place.bytes("scene.exr").len() < before.len());
-    assert_eq!(
-        names(&place.path("")),
-        ["scene.exr", "scene.png", "scene.toml"]
-    );
+    assert_eq!(names(&place.path("")), ["scene.exr", "scene.png", "scene.toml"]);
 }
 
 #[test]
@@ -145,12 +141,7 @@ fn a_reader_that_has_gone_is_no_failure() {
             .unwrap();
         drop(child.stdout.take());
         let mut err = String::new();
-        child
-            .stderr
-            .take()
-            .unwrap()
-            .read_to_string(&mut err)
-            .unwrap();
+        child.stderr.take().unwrap().read_to_string(&mut err).unwrap();
         assert!(!err.contains("panicked"), "{err}");
         assert_eq!(child.wait().unwrap().code(), Some(0), "{err}");
     }
@@ -167,10 +158,7 @@ fn a_map_without_any_resolved_cell_is_written_and_fails() {
     let place = Place::with(HINGED);
     let run = place.run(&["map", "scene.toml", "-o", ".", "--engine", "cpu"]);
     assert_eq!(run.code, Some(1), "{run:?}");
-    assert!(
-        run.err.contains("error: all 4 cells are unresolved"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("error: all 4 cells are unresolved"), "{run:?}");
     assert_eq!(run.count("unresolved"), 4, "{run:?}");
     assert!(StoredMap::open(&place.path("scene.exr")).is_ok());
 

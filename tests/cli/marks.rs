@@ -6,10 +6,7 @@ use whiskmap::store::{MapDescription, MapWriter, Output, TemporaryFiles};
 
 /// Writes the small map with this friction into its own folder, and returns its name.
 fn place(friction: f64) -> Place {
-    Place::with(&SCENE.replace(
-        "[grid]",
-        &format!("[contact]\nfriction = {friction}\n[grid]"),
-    ))
+    Place::with(&SCENE.replace("[grid]", &format!("[contact]\nfriction = {friction}\n[grid]")))
 }
 
 /// Writes a map without `status`.

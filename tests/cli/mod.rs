@@ -1,8 +1,5 @@
 //! Tests of the program: arguments, files, messages, exit codes.
-#![allow(
-    clippy::unwrap_used,
-    reason = "a test that cannot set up its files should stop"
-)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot set up its files should stop")]
 
 mod bench;
 mod branch;

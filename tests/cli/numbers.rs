@@ -77,10 +77,7 @@ fn the_tip_of_a_perfect_cone_has_no_strain() {
             Place::with(&BASE.replace("tip_radius_um = 1.5", &format!("tip_radius_um = {tip}")));
         let run = place.run(&["shape", "scene.toml", "--distance=15.66", "--push-angle=10"]);
         let last = run.out.lines().last().unwrap_or_default();
-        assert!(
-            last.starts_with("20.0,") && last.ends_with(",0.0,0.0,free"),
-            "{last}"
-        );
+        assert!(last.starts_with("20.0,") && last.ends_with(",0.0,0.0,free"), "{last}");
     }
 }
 
@@ -107,11 +104,7 @@ fn frames_with_absurd_numbers_are_refused() {
         force(&format!("{time},0.03,2,15,4,30,2,0")).assert_refused(&[&must]);
     }
     // A lever within the rounding errors of the positions gives no force.
-    for (x, lever) in [
-        ("2", "none"),
-        ("2.0000000000000004", "rounding"),
-        ("3e-310", "subnormal"),
-    ] {
+    for (x, lever) in [("2", "none"), ("2.0000000000000004", "rounding"), ("3e-310", "subnormal")] {
         let at = if lever == "subnormal" { "0" } else { "2" };
         let run = force(&format!("0,0.03,0,{x},0,0,{at},0"));
         assert!(run.out.ends_with(",,,,,,,no-lever\n"), "{run:?}");

@@ -28,8 +28,5 @@ fn render_warns_of_another_version() {
     let other = format!("9{}", &current[1..]);
     let warning = format!("warning: old.exr was written by whiskmap {other}, not by {current}");
     let said = render(&other);
-    assert!(
-        said.starts_with(&warning) && said.lines().count() == 1,
-        "{said}"
-    );
+    assert!(said.starts_with(&warning) && said.lines().count() == 1, "{said}");
 }

@@ -21,10 +21,7 @@ fn figures_come_with_their_tables() {
     let branch = |shown: &str| format!("distance_mm,side,stable,push_angle_deg,{shown},mark");
     let shape = "arc_length_mm,x_mm,y_mm,angle_deg,curvature_per_mm,moment_nnm,strain,part";
     let frame = "time_s,angle_deg,regime,x_mm,y_mm";
-    let (swept, tip) = (
-        "time_s,angle_deg,phase,x_mm,y_mm",
-        "tip_from_mm,tip_to_mm,tip_time_s",
-    );
+    let (swept, tip) = ("time_s,angle_deg,phase,x_mm,y_mm", "tip_from_mm,tip_to_mm,tip_time_s");
     let trial = "time_s,angle_deg,curvature_per_mm,force_un,lever_force_un,model_force_un";
     let (section, sketch) = ("arc_length_mm,x_mm,y_mm,radius_um", "whisker,x_mm,y_mm");
     let solution = format!("solution,push_angle_deg,{shape}");
@@ -41,19 +38,10 @@ fn figures_come_with_their_tables() {
         (&["3d", "3i"], &branch("s_obj_mm")),
         (&["3e", "3j", "4d", "5c_left", "5c_right"], ends),
         (&["4b", "4c", "5b"], frame),
-        (
-            &words("6b_free 6b_330um 6b_1500um 6b_4500um 6e_free 6e_2000um"),
-            swept,
-        ),
+        (&words("6b_free 6b_330um 6b_1500um 6b_4500um 6e_free 6e_2000um"), swept),
         (&["6e_330um", "6e_3300um"], swept),
-        (
-            &words("6c_histogram_free 6c_histogram_330um 6c_histogram_1500um"),
-            tip,
-        ),
-        (
-            &words("6c_histogram_4500um 6f_histogram_free 6f_histogram_330um"),
-            tip,
-        ),
+        (&words("6c_histogram_free 6c_histogram_330um 6c_histogram_1500um"), tip),
+        (&words("6c_histogram_4500um 6f_histogram_free 6f_histogram_330um"), tip),
         (&["6f_histogram_2000um", "6f_histogram_3300um"], tip),
         (&["6c_free", "6c_330um", "6c_1500um", "6c_4500um"], &samples),
         (&["6f_free", "6f_330um", "6f_2000um", "6f_3300um"], &samples),
@@ -99,10 +87,7 @@ fn figures_show_measured_points() {
 #[test]
 fn figures_refuse_points_beyond_reach() {
     let place = Place::with(SCENE);
-    place.write(
-        "points.csv",
-        "side,distance_mm,push_angle_deg\ncb,9,21\ncb,15.2,3\n",
-    );
+    place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,9,21\ncb,15.2,3\n");
     for option in ["--fig4d", "--fig5c-left", "--fig5c-right"] {
         let run = place.run(&["reproduce", "figures", option, "points.csv"]);
         run.assert_refused(&[&format!(
@@ -115,26 +100,14 @@ fn figures_refuse_points_beyond_reach() {
 #[test]
 fn verify_passes_every_number_but_one_of_the_papers() {
     let run = Place::with(SCENE).quiet(&["verify"]);
-    let said = |verdict| {
-        run.out
-            .lines()
-            .filter(|line| line.ends_with(verdict))
-            .collect::<Vec<_>>()
-    };
+    let said = |verdict| run.out.lines().filter(|line| line.ends_with(verdict)).collect::<Vec<_>>();
     let (passes, differs) = (said("PASS").len(), said("DIFFERS"));
     assert!(passes > 30, "{run:?}");
     assert!(
         differs.len() == 1 && differs[0].starts_with("cylinder CB, touched at 10 mm"),
         "{run:?}"
     );
-    assert!(
-        differs[0].contains("paper") && differs[0].contains("89.2197"),
-        "{run:?}"
-    );
+    assert!(differs[0].contains("paper") && differs[0].contains("89.2197"), "{run:?}");
     let all = passes + 1;
-    assert!(
-        run.out
-            .contains(&format!("\n{passes} of {all} checks pass; 1 DIFFERS")),
-        "{run:?}"
-    );
+    assert!(run.out.contains(&format!("\n{passes} of {all} checks pass; 1 DIFFERS")), "{run:?}");
 }

@@ -17,18 +17,9 @@ fn lines(svg: &str, colour: &str) -> Vec<Vec<[f64; 2]>> {
         let (x, y) = pair.split_once(',').unwrap();
         [x.parse().unwrap(), y.parse().unwrap()]
     };
-    let points = |tag: &str| {
-        tag.split('"')
-            .nth(1)
-            .unwrap()
-            .split(' ')
-            .map(point)
-            .collect()
-    };
+    let points = |tag: &str| tag.split('"').nth(1).unwrap().split(' ').map(point).collect();
     let lines = coloured.map(points);
-    lines
-        .filter(|line: &Vec<[f64; 2]>| line.len() > 2 || line[1][0] - line[0][0] != 62.0)
-        .collect()
+    lines.filter(|line: &Vec<[f64; 2]>| line.len() > 2 || line[1][0] - line[0][0] != 62.0).collect()
 }
 
 /// The push angle is to the right, CF on the left; the region is closed by a level line where the tip touches first.
@@ -46,17 +37,11 @@ fn a_curve_has_the_push_angle_to_the_right_and_is_closed_at_the_tip() {
         assert!(svg.contains(&format!(">{text}<")), "{text}");
     }
     let top = lines(&svg, "#9aa1a8").pop().unwrap();
-    assert!(
-        top.len() == 2 && top[0][1] == top[1][1] && top[0][0] < top[1][0],
-        "{top:?}"
-    );
+    assert!(top.len() == 2 && top[0][1] == top[1][1] && top[0][0] < top[1][0], "{top:?}");
     let curves = [lines(&svg, "#222b33"), lines(&svg, "#1c6cc4")].concat();
     let ends: Vec<[f64; 2]> = curves.iter().flatten().copied().collect();
     assert!(top.iter().all(|end| ends.contains(end)));
-    assert!(
-        ends.iter().all(|[_, y]| *y >= top[0][1]),
-        "nothing is above the tip"
-    );
+    assert!(ends.iter().all(|[_, y]| *y >= top[0][1]), "nothing is above the tip");
 }
 
 #[test]
@@ -75,9 +60,8 @@ fn the_force_axis_of_a_branch_ends_with_the_stable_states() {
     let height = |svg: &str| {
         let stable = lines(svg, "#0072b2");
         let heights = stable.iter().filter(|line| line.len() > 2).flatten();
-        let [low, high] = heights.fold([f64::INFINITY, 0.0_f64], |[low, high], [_, y]| {
-            [low.min(*y), high.max(*y)]
-        });
+        let [low, high] = heights
+            .fold([f64::INFINITY, 0.0_f64], |[low, high], [_, y]| [low.min(*y), high.max(*y)]);
         high - low
     };
     let limited = drawn(&place, &branch);
@@ -96,20 +80,13 @@ fn a_row_of_a_map_is_a_line_chart() {
     place.good(&[&row[..], &["--channel", "force_un"]].concat());
     let svg = place.text("p.svg");
     assert!(svg.contains(">contact force (\u{b5}N)<") && !svg.contains("<image"));
-    assert_eq!(
-        lines(&svg, "#222b33").len(),
-        2,
-        "one on each side of the push 0"
-    );
+    assert_eq!(lines(&svg, "#222b33").len(), 2, "one on each side of the push 0");
     assert!(!svg.contains("slides to base"));
     place.run(&row).assert_said(0, "");
     let regimes = place.text("p.svg");
     assert!(regimes.contains("<image"), "regimes have no values");
     // On CF the contact first slides toward the base, then sticks.
-    place.write(
-        "scene.toml",
-        &SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"),
-    );
+    place.write("scene.toml", &SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     place.map(&["scene.toml", "--no-png"]);
     place.good(&[&row[..], &["--channel", "force_un"]].concat());
     let svg = place.text("p.svg");
@@ -132,9 +109,7 @@ fn a_picture_has_its_size_on_paper() {
     // Width and height in pixels, at bytes 16 to 23 of a PNG.
     assert_eq!(place.bytes("p.png")[16..24], [0, 0, 1, 79, 0, 0, 0, 236]);
     let refused = |more: &[&str], parts: &[&str]| {
-        place
-            .run(&[&["curve", "scene.toml"], more].concat())
-            .assert_refused(parts);
+        place.run(&[&["curve", "scene.toml"], more].concat()).assert_refused(parts);
     };
     refused(&["--size", "85mm"], &["--size: needs --plot"]);
     refused(&["--plot=q.pdf", "--dpi=300"], &["--size"]);
@@ -145,10 +120,7 @@ fn a_picture_has_its_size_on_paper() {
         &["--plot=q.pdf", "--size=20mm"],
         &["--size: too small for text of 7 pt; the width must be at least"],
     );
-    refused(
-        &["--plot=q.pdf", "--size=85x20mm"],
-        &["the height must be at least"],
-    );
+    refused(&["--plot=q.pdf", "--size=85x20mm"], &["the height must be at least"]);
     refused(
         &["--plot=q.png", "--size=1m", "--dpi=600"],
         &["--dpi 600: gives 23622 pixels", "at most 10000"],

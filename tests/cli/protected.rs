@@ -20,9 +20,7 @@ impl Place {
     fn all(&self) -> Vec<(String, Vec<u8>)> {
         let names = names(&self.path(""));
         let files = names.into_iter().filter(|name| self.path(name).is_file());
-        files
-            .map(|name| (name.clone(), self.bytes(&name)))
-            .collect()
+        files.map(|name| (name.clone(), self.bytes(&name))).collect()
     }
 
     fn mode(&self, name: &str) -> u32 {
@@ -75,10 +73,7 @@ fn no_output_is_a_file_of_the_scene() {
     let radius = |line: &&str| !line.contains("radius_um");
     let scene: Vec<&str> = scene.lines().filter(radius).collect();
     let place = Place::with(&scene.join("\n"));
-    place.write(
-        "radii.csv",
-        "arc_length_mm,radius_um\n0,30\n10,14\n20,1.5\n",
-    );
+    place.write("radii.csv", "arc_length_mm,radius_um\n0,30\n10,14\n20,1.5\n");
     let parts = ["--csv radii.csv: is the input radii.csv"];
     place.keeps(&["curve", "scene.toml", "--csv=radii.csv"], &parts);
 
@@ -181,18 +176,11 @@ fn no_output_is_a_map_or_in_a_store() {
             _ => format!("--output {name}: {is} the input scene.zarr"),
         };
         let extract = ["extract", "scene.zarr", "-o", name];
-        let channel: &[&str] = if name.ends_with("npy") {
-            &["--channel=regime"]
-        } else {
-            &[]
-        };
+        let channel: &[&str] = if name.ends_with("npy") { &["--channel=regime"] } else { &[] };
         place.keeps(&[&extract[..], channel].concat(), &[&of]);
     }
     let render = ["render", "link.zarr", "-o=scene.zarr/p.png"];
-    place.keeps(
-        &render,
-        &["--output scene.zarr/p.png: is in the input link.zarr"],
-    );
+    place.keeps(&render, &["--output scene.zarr/p.png: is in the input link.zarr"]);
     assert_eq!(names(&place.path("scene.zarr")), before);
 }
 

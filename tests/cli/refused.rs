@@ -28,16 +28,9 @@ fn scenes_that_cannot_be_read() {
 fn maps_too_large_to_compute() {
     let place = Place::with(&SCENE.replace("count = 24", "count = 16384"));
     let run = place.run(&["map", "scene.toml", "--engine", "cpu"]);
-    let needed = [
-        "16384 push angles x 16384 distances",
-        "268435456 cells",
-        "at most 4096 MiB",
-    ];
+    let needed = ["16384 push angles x 16384 distances", "268435456 cells", "at most 4096 MiB"];
     run.assert_refused(&needed);
-    assert!(
-        run.err.contains("lower grid.push_angle_deg.count"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("lower grid.push_angle_deg.count"), "{run:?}");
     assert_eq!(names(&place.path("")), ["scene.toml"]);
 }
 
@@ -58,9 +51,7 @@ fn maps_too_large_for_the_disk() {
     let place = Place::with(&format!("{large}{axes}"));
     for format in ["exr", "zarr"] {
         let run = place.run(&["map", "scene.toml", "--engine=cpu", "--format", format]);
-        let said = run
-            .err
-            .strip_prefix("error: cannot write outputs: the map needs about ");
+        let said = run.err.strip_prefix("error: cannot write outputs: the map needs about ");
         let end = " are free; give a folder with more space, or --force\n";
         let sizes = said.and_then(|said| said.strip_suffix(end)?.split_once(", but "));
         let sizes = sizes.unwrap_or_else(|| panic!("{run:?}"));
@@ -69,15 +60,9 @@ fn maps_too_large_for_the_disk() {
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
     let forced = ["map", "scene.toml", "--engine=cpu", "--force"];
-    let mut child = place
-        .plain_command(&forced)
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = place.plain_command(&forced).stderr(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
-    BufReader::new(child.stderr.take().unwrap())
-        .read_line(&mut line)
-        .unwrap();
+    BufReader::new(child.stderr.take().unwrap()).read_line(&mut line).unwrap();
     child.kill().unwrap();
     child.wait().unwrap();
     assert!(line.starts_with("engine: "), "{line}");
@@ -105,10 +90,7 @@ fn a_folder_that_takes_no_files() {
     place.good(&map);
     let store = "/proc/slice.zarr";
     let run = place.run(&["extract", "maps/scene.exr", "-o", store]);
-    run.assert_refused(&[
-        "--output /proc/slice.zarr: ",
-        "in a folder that can be written",
-    ]);
+    run.assert_refused(&["--output /proc/slice.zarr: ", "in a folder that can be written"]);
 }
 
 /// An administrator may write to any folder, so the test then runs the program as another user.
@@ -191,19 +173,9 @@ fn arguments_out_of_range() {
     let shape = words("shape scene.toml --distance 9 --push-angle 1");
     for (at, word, option, must) in [
         (3, "far", "--distance", "must be a length, such as"),
-        (
-            3,
-            "30deg",
-            "--distance",
-            "unit deg: must be mm (the default), cm, m or um",
-        ),
+        (3, "30deg", "--distance", "unit deg: must be mm (the default), cm, m or um"),
         (5, "far", "--push-angle", "must be an angle, such as"),
-        (
-            5,
-            "1mm",
-            "--push-angle",
-            "unit mm: must be deg (the default), ° or rad",
-        ),
+        (5, "1mm", "--push-angle", "unit mm: must be deg (the default), ° or rad"),
     ] {
         let mut words = shape.clone();
         words[at] = word;
@@ -263,14 +235,7 @@ fn a_column_of_a_plot_needs_a_plot() {
     let place = Place::with(SCENE);
     for words in [
         &["curve", "scene.toml", "--x", "force_un"][..],
-        &[
-            "branch",
-            "scene.toml",
-            "--distance",
-            "10",
-            "--y",
-            "force_un",
-        ],
+        &["branch", "scene.toml", "--distance", "10", "--y", "force_un"],
     ] {
         place.run(words).assert_refused(&["--plot <FILE>"]);
     }
@@ -285,15 +250,7 @@ fn a_picture_has_room_for_all_names() {
     run.assert_refused(&["too small for text of 7 pt; the height must be at least"]);
     let run = place.run(&[&words[..], &["60mm"]].concat());
     let picture = String::from_utf8(place.bytes("s.svg")).unwrap();
-    let names = [
-        "length_mm",
-        "parabola_per_mm",
-        "base_radius_um",
-        "tip_radius_um",
-        "pole_radius_mm",
-    ];
-    assert!(
-        run.code == Some(0) && names.iter().all(|name| picture.contains(name)),
-        "{picture}"
-    );
+    let names =
+        ["length_mm", "parabola_per_mm", "base_radius_um", "tip_radius_um", "pole_radius_mm"];
+    assert!(run.code == Some(0) && names.iter().all(|name| picture.contains(name)), "{picture}");
 }

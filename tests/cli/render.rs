@@ -18,11 +18,7 @@ fn render_draws_the_picture_again() {
     assert!(force.starts_with(b"\x89PNG") && force != drawn);
 
     let run = place.run(&["render", "outputs/scene.exr", "-o", "elsewhere.png"]);
-    assert_eq!(
-        (run.code, &*run.out),
-        (Some(0), "elsewhere.png\n"),
-        "{run:?}"
-    );
+    assert_eq!((run.code, &*run.out), (Some(0), "elsewhere.png\n"), "{run:?}");
     assert!(place.bytes("elsewhere.png") == drawn);
 }
 
@@ -34,10 +30,7 @@ fn every_channel_can_be_drawn() {
     for channel in map.channels() {
         place.quiet(&["render", "outputs/scene.exr", "--channel", channel]);
     }
-    assert_eq!(
-        names(&place.path("outputs")).len(),
-        1 + map.channels().len()
-    );
+    assert_eq!(names(&place.path("outputs")).len(), 1 + map.channels().len());
 }
 
 /// The picture of a part of a store equals that of the part's map.
@@ -48,23 +41,11 @@ fn stores_and_parts_are_drawn_like_maps() {
     let run = |arguments: &[&str]| place.good(arguments);
     let at = ["--at=friction=0.2", "--at=taper=0.5"];
     run(&[&["extract", "scene.zarr", "-o", "part.exr"], &at[..]].concat());
-    for channel in [
-        &[][..],
-        &["--channel=status"],
-        &["--channel=force_un", "--log"],
-    ] {
+    for channel in [&[][..], &["--channel=status"], &["--channel=force_un", "--log"]] {
         run(&[&["render", "part.exr", "-o", "part.png"], channel].concat());
-        let drawn = [
-            &["render", "scene.zarr", "-o", "drawn.png"],
-            &at[..],
-            channel,
-        ]
-        .concat();
+        let drawn = [&["render", "scene.zarr", "-o", "drawn.png"], &at[..], channel].concat();
         assert_eq!(run(&drawn).err, "friction = 0.3\ntaper = 0.5\n");
-        assert!(
-            place.bytes("drawn.png") == place.bytes("part.png"),
-            "{channel:?}"
-        );
+        assert!(place.bytes("drawn.png") == place.bytes("part.png"), "{channel:?}");
     }
     // One whisker of several in a map, and one distance.
     run(&words("extract scene.zarr --at=friction=0 -o whole.exr"));
@@ -74,9 +55,7 @@ fn stores_and_parts_are_drawn_like_maps() {
         run(&["render", "whole.exr", at, "-o", "drawn.png"]);
         assert!(place.bytes("drawn.png") == place.bytes("part.png"), "{at}");
     }
-    let beside = run(&words(
-        "render scene.zarr --at=friction=0.3 --channel=force_un",
-    ));
+    let beside = run(&words("render scene.zarr --at=friction=0.3 --channel=force_un"));
     assert_eq!(beside.out, "scene.friction=0.3.force_un.png\n");
 
     // An extracted axis of one value takes no room, and its value stands once in the title.
@@ -107,22 +86,11 @@ fn stores_and_parts_are_drawn_like_maps() {
         ("force_un", "no contact, or not computed"),
     ] {
         let picture = |axes: &str| {
-            place.good(&[
-                "render",
-                "scene.zarr",
-                axes,
-                "--channel",
-                channel,
-                "-o",
-                "part.svg",
-            ]);
+            place.good(&["render", "scene.zarr", axes, "--channel", channel, "-o", "part.svg"]);
             place.text("part.svg")
         };
         assert!(picture("--at=friction=0").contains(said), "{channel}");
-        assert!(
-            !picture("--at=friction=0.3").contains("not computed"),
-            "{channel}"
-        );
+        assert!(!picture("--at=friction=0.3").contains("not computed"), "{channel}");
     }
     // Only pictures may have gaps.
     place
@@ -138,13 +106,7 @@ fn render_refuses_what_is_no_map() {
     let place = Place::with(SCENE);
     place.map(&["scene.toml", "--no-png"]);
     let run = place.run(&["render", "outputs/scene.exr", "--channel", "colour"]);
-    let known = [
-        "--channel colour",
-        "must be one of",
-        "regime, ",
-        "force_un",
-        "margin_deg",
-    ];
+    let known = ["--channel colour", "must be one of", "regime, ", "force_un", "margin_deg"];
     run.assert_refused(&known);
 
     place.write("scene.txt", SCENE);
@@ -152,9 +114,7 @@ fn render_refuses_what_is_no_map() {
     run.assert_refused(&["scene.txt", "not an EXR file"]);
     let run = place.run(&["render", "nowhere.exr"]);
     run.assert_refused(&["nowhere.exr", &no_file()]);
-    place
-        .run(&["render", "outputs"])
-        .assert_refused(&["outputs"]);
+    place.run(&["render", "outputs"]).assert_refused(&["outputs"]);
 
     let whole = place.bytes("outputs/scene.exr");
     for bytes in [0, 4, 100, whole.len() / 2, whole.len() - 1] {
@@ -233,24 +193,12 @@ fn scale_and_width_are_chosen() {
     let title = ">A test<";
     let title = match plain.contains(title) {
         true => title.to_owned(),
-        false => format!(
-            ">{}<",
-            SCENE.lines().next().unwrap().split('"').nth(1).unwrap()
-        ),
+        false => format!(">{}<", SCENE.lines().next().unwrap().split('"').nth(1).unwrap()),
     };
-    assert!(
-        plain.contains(&title) && !untitled.contains(&title),
-        "{title}"
-    );
+    assert!(plain.contains(&title) && !untitled.contains(&title), "{title}");
     assert!(untitled.contains(">contact force ("), "{untitled}");
     let height = |svg: &str| -> f64 {
-        let height = svg
-            .split(" height=\"")
-            .nth(1)
-            .unwrap()
-            .split('"')
-            .next()
-            .unwrap();
+        let height = svg.split(" height=\"").nth(1).unwrap().split('"').next().unwrap();
         height.parse().unwrap()
     };
     assert!(height(&untitled) < height(&plain));
@@ -267,14 +215,7 @@ fn scale_and_width_are_chosen() {
     assert!(!moment(&["--range", "-100,100"]).contains(size));
 
     let arc = |range: &str| {
-        let arc = [
-            "--channel",
-            "arc_length_mm",
-            "-o",
-            "arc.svg",
-            "--range",
-            range,
-        ];
+        let arc = ["--channel", "arc_length_mm", "-o", "arc.svg", "--range", range];
         place.good(&[&["render", "outputs/scene.exr"], &arc[..]].concat());
         place.bytes("arc.svg")
     };
@@ -286,25 +227,16 @@ fn scale_and_width_are_chosen() {
     };
     refused(&["--log"], &["--channel <NAME>"]);
     refused(&["--range", "1,2"], &["--channel <NAME>"]);
-    refused(
-        &["--channel", "status", "--log"],
-        &["`status`", "made of codes"],
-    );
+    refused(&["--channel", "status", "--log"], &["`status`", "made of codes"]);
     let force = ["--channel", "force_un"];
     let refused = |more: &[&str], parts: &[&str]| refused(&[&force[..], more].concat(), parts);
     for range in ["1", "1;2"] {
-        refused(
-            &["--range", range],
-            &[range, "two numbers, separated by a comma"],
-        );
+        refused(&["--range", range], &[range, "two numbers, separated by a comma"]);
     }
     for range in ["a,2", "1,2,3", "0,inf"] {
         refused(&["--range", range], &[range, "must be a force"]);
     }
-    refused(
-        &["--range", "1deg,2"],
-        &["--range 1deg,2: 1deg: unit deg: must be uN (the default)"],
-    );
+    refused(&["--range", "1deg,2"], &["--range 1deg,2: 1deg: unit deg: must be uN (the default)"]);
     refused(&["--range", "2,1"], &["range 2,1", "smaller one first"]);
     refused(&["--range", "1e99,1"], &["range 1e99,1:"]);
     refused(&["--log", "--range", "-1,1"], &["range -1,1", "above 0"]);

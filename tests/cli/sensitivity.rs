@@ -17,9 +17,8 @@ fn cell<'a>(header: &[String], cells: &'a [String], name: &str) -> &'a str {
 #[test]
 fn the_table_has_every_variable_of_the_scene() {
     let place = Place::with(SCENE);
-    let run = place.quiet(&words(
-        "sensitivity scene.toml --distance 15.66 --csv - --plot bars.svg",
-    ));
+    let run =
+        place.quiet(&words("sensitivity scene.toml --distance 15.66 --csv - --plot bars.svg"));
     let table = lines(&run.out);
     let (header, rows) = table.split_first().unwrap();
     let sum = |side: &str| -> f64 {
@@ -35,25 +34,15 @@ fn the_table_has_every_variable_of_the_scene() {
         };
         of_side.map(part).sum()
     };
-    assert!(
-        sum("cb").abs() < 1e-9 && sum("cf").abs() < 1e-9,
-        "{}",
-        run.out
-    );
+    assert!(sum("cb").abs() < 1e-9 && sum("cf").abs() < 1e-9, "{}", run.out);
     // Forces and moments are proportional to the modulus, and strains do not depend on it.
-    for row in rows
-        .iter()
-        .filter(|row| cell(header, row, "variable") == "youngs_modulus_gpa")
-    {
+    for row in rows.iter().filter(|row| cell(header, row, "variable") == "youngs_modulus_gpa") {
         let number = |name: &str| cell(header, row, name).parse::<f64>().unwrap();
         for [size, slope] in [
             ["max_contact_force_un", "d_max_contact_force_un"],
             ["max_base_moment_nnm", "d_max_base_moment_nnm"],
         ] {
-            assert!(
-                (number("value") * number(slope) / number(size) - 1.0).abs() < 1e-9,
-                "{row:?}"
-            );
+            assert!((number("value") * number(slope) / number(size) - 1.0).abs() < 1e-9, "{row:?}");
         }
         assert!((1e-4..0.1).contains(&number("max_strain")), "{row:?}");
     }
@@ -67,23 +56,14 @@ fn curves_and_branches_have_columns_of_derivatives() {
     let place = Place::with(SCENE);
     let all = place.quiet(&["sensitivity", "scene.toml", "--distance", "15.66"]);
     let all = lines(&all.out);
-    let curve = place.quiet(&words(
-        "curve scene.toml --distance 15.66 --derivatives=taper",
-    ));
+    let curve = place.quiet(&words("curve scene.toml --distance 15.66 --derivatives=taper"));
     let curve = lines(&curve.out);
     for (side, line) in [("cf", &curve[1]), ("cb", &curve[2])] {
-        let push_row = all
-            .iter()
-            .find(|row| row[0] == side && row[4] == "taper")
-            .unwrap();
-        assert_eq!(
-            cell(&curve[0], line, "d_push_d_taper"),
-            cell(&all[0], push_row, "d_push_deg")
-        );
+        let push_row = all.iter().find(|row| row[0] == side && row[4] == "taper").unwrap();
+        assert_eq!(cell(&curve[0], line, "d_push_d_taper"), cell(&all[0], push_row, "d_push_deg"));
     }
-    let branch = place.quiet(&words(
-        "branch scene.toml --distance 15.66 --side cb --points 9 --derivatives",
-    ));
+    let branch = place
+        .quiet(&words("branch scene.toml --distance 15.66 --side cb --points 9 --derivatives"));
     let branch = lines(&branch.out);
     let (header, rows) = branch.split_first().unwrap();
     for row in rows {
@@ -98,9 +78,7 @@ fn curves_and_branches_have_columns_of_derivatives() {
     let refused = place.run(&["curve", "scene.toml", "--derivatives=spiral_per_mm"]);
     assert_eq!(refused.code, Some(2));
     assert!(
-        refused
-            .err
-            .contains("--derivatives spiral_per_mm: must be one of length_mm"),
+        refused.err.contains("--derivatives spiral_per_mm: must be one of length_mm"),
         "{}",
         refused.err
     );
@@ -137,9 +115,5 @@ fn maps_store_derivatives_on_demand() {
     place.quiet(&["render", "outputs/scene.exr", "--channel", "d_push_d_taper"]);
     let refused = place.run(&["map", "scene.toml", "--channels=regime,d_push_d_friction"]);
     assert_eq!(refused.code, Some(2));
-    assert!(
-        refused.err.contains("d_push_d_friction has no values"),
-        "{}",
-        refused.err
-    );
+    assert!(refused.err.contains("d_push_d_friction has no values"), "{}", refused.err);
 }

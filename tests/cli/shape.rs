@@ -33,17 +33,12 @@ fn the_state_has_the_loads_of_the_shape() {
     let table = place.quiet(&[&at[..], &["--csv", "-"]].concat()).out;
     let state = place.text("state.csv");
     let state = cells(&state, BRANCH);
-    let [row] = &state[..] else {
-        panic!("{state:?}")
-    };
+    let [row] = &state[..] else { panic!("{state:?}") };
     let number = |cell: &str| cell.parse::<f64>().unwrap();
     let shape = cells(&table, SHAPE);
     let base = &shape[0];
     assert_eq!((row[1], row[2], row[3]), ("cb", "true", "10.0"));
-    assert!(
-        (number(row[11]) / number(base[5]) - 1.0).abs() < 1e-9,
-        "{row:?} {base:?}"
-    );
+    assert!((number(row[11]) / number(base[5]) - 1.0).abs() < 1e-9, "{row:?} {base:?}");
     let most = shape.iter().map(|row| number(row[6])).fold(0.0, f64::max);
     let peak = number(row[13]);
     assert!((0.999..=1.0).contains(&(most / peak)), "{most} {peak}");
@@ -51,26 +46,17 @@ fn the_state_has_the_loads_of_the_shape() {
     let words = [&at[..], &["--csv", "shape.csv", "--units", "mN, Nmm,cm"]].concat();
     assert_eq!(place.quiet(&words).out, "shape.csv\nstate.csv\n");
     let other = place.text("state.csv");
-    let header = BRANCH
-        .replace("_un", "_mn")
-        .replace("_nnm", "_nmm")
-        .replace("_mm", "_cm");
+    let header = BRANCH.replace("_un", "_mn").replace("_nnm", "_nmm").replace("_mm", "_cm");
     let converted = &cells(&other, &header)[0];
     for (column, size) in [(7, 1e3), (11, 1e6), (5, 10.0), (3, 1.0)] {
-        assert_eq!(
-            number(converted[column]),
-            number(row[column]) / size,
-            "{column}"
-        );
+        assert_eq!(number(converted[column]), number(row[column]) / size, "{column}");
     }
     for (units, must) in [
         ("mN,kg", "--units kg: must be one of mm, cm, "),
         ("mN,uN", "--units uN: mN is a unit of the same quantity"),
         ("mn", "did you mean `mN`?"),
     ] {
-        place
-            .run(&[&at[..], &["--units", units]].concat())
-            .assert_refused(&[must]);
+        place.run(&[&at[..], &["--units", units]].concat()).assert_refused(&[must]);
     }
 }
 
@@ -78,38 +64,20 @@ fn the_state_has_the_loads_of_the_shape() {
 fn states_that_do_not_exist_have_a_reason() {
     let place = Place::with(SCENE);
     let shape = |distance: &str, push: &str, more: &[&str]| {
-        let arguments = [
-            "shape",
-            "scene.toml",
-            "--distance",
-            distance,
-            "--push-angle",
-            push,
-        ];
+        let arguments = ["shape", "scene.toml", "--distance", distance, "--push-angle", push];
         place.run(&[&arguments[..], more].concat())
     };
     shape("15.66", "20", &[]).assert_refused(&["--push-angle 20 deg: slipped off at 15.6094"]);
     // An end that has the same nine decimals as the push angle is told apart.
-    let curve = place
-        .run(&["curve", "scene.toml", "--distance", "15.66"])
-        .out;
-    let end: f64 = curve
-        .lines()
-        .nth(2)
-        .unwrap()
-        .split(',')
-        .nth(4)
-        .unwrap()
-        .parse()
-        .unwrap();
+    let curve = place.run(&["curve", "scene.toml", "--distance", "15.66"]).out;
+    let end: f64 = curve.lines().nth(2).unwrap().split(',').nth(4).unwrap().parse().unwrap();
     let beyond = (end + 2e-10).to_string();
     shape("15.66", &beyond, &[])
         .assert_refused(&["slipped off at 15.6094", " deg, 2e-10 deg earlier"]);
     // The whisker has moved away from the pole.
-    for (push, side, stays) in [
-        ("-5", "cb", "between 0.000000000 and 15.6094"),
-        ("5", "cf", "between -24.91"),
-    ] {
+    for (push, side, stays) in
+        [("-5", "cb", "between 0.000000000 and 15.6094"), ("5", "cf", "between -24.91")]
+    {
         let lost = format!("--push-angle {push} deg: lost touch");
         shape("15.66", push, &["--side", side]).assert_refused(&[&lost, stays]);
     }
@@ -121,9 +89,7 @@ fn states_that_do_not_exist_have_a_reason() {
     let reach = "out of reach: the tip of the resting whisker is 19.657";
     shape("19.9", "1", &[]).assert_refused(&["--distance 19.9", reach]);
     let branch = ["branch", "scene.toml", "--distance", "19.9"];
-    place
-        .run(&branch)
-        .assert_refused(&["--distance 19.9", reach]);
+    place.run(&branch).assert_refused(&["--distance 19.9", reach]);
     assert_eq!(names(&place.path("")), ["scene.toml"]);
 }
 
@@ -137,10 +103,7 @@ fn sliding_toward_the_base_is_reported() {
         let run = place.run(&[&shape[..], &[distance, "--push-angle", push]].concat());
         assert_eq!(run.err, "");
         let state = place.text("state.csv");
-        let lines: Vec<Vec<&str>> = state
-            .lines()
-            .map(|line| line.split(',').collect())
-            .collect();
+        let lines: Vec<Vec<&str>> = state.lines().map(|line| line.split(',').collect()).collect();
         let column = lines[0].iter().position(|name| *name == "sliding").unwrap();
         lines[1][column].to_owned()
     };

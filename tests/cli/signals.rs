@@ -10,20 +10,14 @@ use std::time::{Duration, SystemTime};
 /// Scene of a sweep that takes half a minute, so that it ends by itself where no signal ends it.
 fn long() -> String {
     let axes = "taper = { from = 0, to = 0.9, count = 80 }\ncurvature_per_mm = { from = 0, to = 0.04, count = 80 }";
-    let scene = SCENE
-        .lines()
-        .filter(|line| !line.starts_with("tip_radius_um"));
+    let scene = SCENE.lines().filter(|line| !line.starts_with("tip_radius_um"));
     let scene: Vec<&str> = scene.collect();
     format!("{}\n{axes}\n", scene.join("\n"))
 }
 
 /// Starts a run, and waits until its unfinished file is in `folder`.
 fn begun(place: &Place, command: &mut Command, folder: &str) -> Child {
-    let mut child = command
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     while unfinished(place, folder).is_empty() {
         assert!(child.try_wait().unwrap().is_none(), "it ended early");
         std::thread::yield_now();
@@ -41,13 +35,7 @@ fn unfinished(place: &Place, folder: &str) -> Vec<String> {
 #[cfg(unix)]
 pub fn send(signal: &str, child: &Child) {
     let kill = format!("kill -{signal} {}", child.id());
-    assert!(
-        Command::new("sh")
-            .args(["-c", &kill])
-            .status()
-            .unwrap()
-            .success()
-    );
+    assert!(Command::new("sh").args(["-c", &kill]).status().unwrap().success());
 }
 
 #[cfg(unix)]
@@ -76,11 +64,7 @@ fn an_interrupted_extract_leaves_no_folder() {
     let extract = ["extract", "outputs/scene.exr", "-o", "new/x.zarr"];
     for _ in 0..40 {
         let mut child = place.plain_command(&extract);
-        let mut child = child
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         while names(&place.path("new")).is_empty() && child.try_wait().unwrap().is_none() {
             std::thread::yield_now();
         }
@@ -118,10 +102,7 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
     let curve = ["curve", "piped.toml", "--csv", "t.csv"];
     let begun = |command: &mut Command| {
         command.env("TMPDIR", place.path("tmp"));
-        let child = command
-            .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
-            .spawn();
+        let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn();
         place.write("piped.toml", SCENE);
         child.unwrap()
     };
@@ -132,11 +113,7 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
 
     // `nohup` ignores the signal.
     let mut shell = Command::new("sh");
-    shell.args([
-        "-c",
-        "trap '' HUP; exec \"$0\" \"$@\"",
-        env!("CARGO_BIN_EXE_whiskmap"),
-    ]);
+    shell.args(["-c", "trap '' HUP; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_whiskmap")]);
     let child = begun(shell.args(curve).current_dir(place.path("")));
     send("HUP", &child);
     assert!(fs::read(place.path("t.csv")).unwrap().len() > 1000);
@@ -149,11 +126,8 @@ fn a_waiting_run_is_interrupted_and_an_ignored_signal_is_not_handled() {
 fn leftovers_of_an_interrupted_run_are_removed_by_the_next_one() {
     let place = Place::with(&long());
     place.write("small.toml", SCENE);
-    let mut killed = begun(
-        &place,
-        &mut place.plain_command(&["map", "scene.toml", "--engine=cpu"]),
-        "outputs",
-    );
+    let mut killed =
+        begun(&place, &mut place.plain_command(&["map", "scene.toml", "--engine=cpu"]), "outputs");
     // Files of running processes are kept.
     place.map(&["small.toml"]);
     let left = unfinished(&place, "outputs");
@@ -173,9 +147,6 @@ fn leftovers_of_an_interrupted_run_are_removed_by_the_next_one() {
     place.map(&["small.toml"]);
     assert_eq!(
         unfinished(&place, "outputs"),
-        [
-            ".whiskmap-another.host+a1B2c3D4late",
-            ".whiskmap-another.host+a1B2c3D4skew"
-        ]
+        [".whiskmap-another.host+a1B2c3D4late", ".whiskmap-another.host+a1B2c3D4skew"]
     );
 }

@@ -36,10 +36,8 @@ fn a_full_standard_output_is_a_failure() {
         &["extract", "scene.exr", "-o=t.csv"],
         &["map", "scene.toml", "--engine=cpu", "-onew"],
     ] {
-        full(arguments).assert_said(
-            1,
-            "error: standard output: No space left on device (os error 28)\n",
-        );
+        full(arguments)
+            .assert_said(1, "error: standard output: No space left on device (os error 28)\n");
     }
     full(&["curve"]).assert_refused(&["<SCENE>"]);
     full(&["curve", "no.toml"]).assert_said(2, "error");

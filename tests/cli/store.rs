@@ -116,14 +116,8 @@ fn any_shards_in_any_order_give_one_store() {
     let run = place.run(&["status", "parts/scene.zarr"]);
     assert_eq!(run.code, Some(1), "{run:?}");
     assert_eq!(run.count("of 8 blocks"), 2);
-    assert!(
-        run.out.contains("missing blocks: 0-1, 3-4, 6-7\n"),
-        "{run:?}"
-    );
-    assert!(
-        run.err.contains("is incomplete: 6 blocks are missing; "),
-        "{run:?}"
-    );
+    assert!(run.out.contains("missing blocks: 0-1, 3-4, 6-7\n"), "{run:?}");
+    assert!(run.err.contains("is incomplete: 6 blocks are missing; "), "{run:?}");
 
     // Two runs at once, then a repeated one.
     let spawn = |shard| {
@@ -218,10 +212,7 @@ fn goes_on(place: &Place) {
         assert!(bytes == whole[name], "{}", name.display());
     }
     let run = place.run(&["status", "torn/scene.zarr", "--verify"]);
-    assert!(
-        run.err.contains("missing") && !run.err.contains("damaged"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("missing") && !run.err.contains("damaged"), "{run:?}");
     good(place, "torn", &["--resume"]);
     assert_same(place, "whole", "torn");
 }
@@ -260,19 +251,15 @@ fn a_store_is_resumed_with_its_own_settings_only() {
         .run(&["status", "nothing.zarr"])
         .assert_refused(&["cannot read nothing.zarr: ", "(os error 2)"]);
     fs::create_dir(place.path("empty")).unwrap();
-    for command in [
-        &["status", "empty"][..],
-        &["render", "empty"],
-        &["extract", "empty", "-o", "t.csv"],
-    ] {
+    for command in
+        [&["status", "empty"][..], &["render", "empty"], &["extract", "empty", "-o", "t.csv"]]
+    {
         place
             .run(command)
             .assert_refused(&["error: empty is not a store: it has no zarr.json; give a folder"]);
     }
     place.write("zarr.json", "{}");
-    place
-        .run(&["status", "."])
-        .assert_refused(&["is not a store of whiskmap"]);
+    place.run(&["status", "."]).assert_refused(&["is not a store of whiskmap"]);
 }
 
 /// Nobody can create files in `/sys`, not even root.
@@ -329,10 +316,7 @@ fn channels_that_are_not_wanted_are_not_stored() {
     for name in some.channels() {
         let [all, some] = [&all, &some].map(|map| map.read_channel(name).unwrap());
         let mut pairs = all.values().zip(some.values());
-        assert!(
-            pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()),
-            "{name}"
-        );
+        assert!(pairs.all(|(a, b)| a == b || a.is_nan() && b.is_nan()), "{name}");
     }
     assert!(some.read_channel("status").is_err());
     let store = ZarrStore::open(&place.path("some/scene.zarr")).unwrap();

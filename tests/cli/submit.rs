@@ -56,10 +56,7 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
         "#SBATCH --cpus-per-task=2",
         "#SBATCH --mem=500M",
     ] {
-        assert!(
-            run.out.lines().any(|printed| printed == line),
-            "{line}: {run:?}"
-        );
+        assert!(run.out.lines().any(|printed| printed == line), "{line}: {run:?}");
     }
     assert!(run.out.lines().count() < 25, "{run:?}");
     place.write("sweep.sbatch", &run.out);
@@ -76,11 +73,8 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
         assert_eq!(run.code, Some(0), "{run:?}");
     }
     fs::create_dir(place.path("found")).unwrap();
-    fs::rename(
-        place.path(&format!("{folder}/scene.zarr")),
-        place.path("found/scene.zarr"),
-    )
-    .unwrap();
+    fs::rename(place.path(&format!("{folder}/scene.zarr")), place.path("found/scene.zarr"))
+        .unwrap();
     assert_same(&place, "whole", "found");
 
     let log = place.text("sbatch.log");
@@ -100,17 +94,10 @@ fn the_tasks_of_the_script_fill_the_store_and_a_last_job_verifies_it() {
     let run = shell(&place, &["-c", status], &[]);
     assert_eq!(run.code, Some(2), "the store is elsewhere: {run:?}");
     assert!(run.err.contains(&format!("{folder}/scene.zarr")), "{run:?}");
-    fs::rename(
-        place.path("found/scene.zarr"),
-        place.path(&format!("{folder}/scene.zarr")),
-    )
-    .unwrap();
+    fs::rename(place.path("found/scene.zarr"), place.path(&format!("{folder}/scene.zarr")))
+        .unwrap();
     let run = shell(&place, &["-c", status], &[]);
-    assert_eq!(
-        (run.code, run.count("of 8 blocks")),
-        (Some(0), 8),
-        "{run:?}"
-    );
+    assert_eq!((run.code, run.count("of 8 blocks")), (Some(0), 8), "{run:?}");
 }
 
 #[test]
@@ -134,14 +121,8 @@ fn submit_refuses_what_no_task_could_do() {
     }
     for (given, said) in [
         (&["--colour"][..], "unexpected argument '--colour'"),
-        (
-            &["--shard", "0/2"],
-            "'--shard <I/N>' cannot be used multiple times",
-        ),
-        (
-            &["--channels", "force"],
-            "--channels force: invalid value 'force'",
-        ),
+        (&["--shard", "0/2"], "'--shard <I/N>' cannot be used multiple times"),
+        (&["--channels", "force"], "--channels force: invalid value 'force'"),
         (&["another.toml"], "unexpected argument 'another.toml'"),
     ] {
         let options = [&["--shards=2", "--"], given].concat();
@@ -151,10 +132,7 @@ fn submit_refuses_what_no_task_could_do() {
     let scene = |scene: &str| place.run(&["submit", scene, "--shards=2"]);
     scene("-").assert_refused(&["scene -: must be a file"]);
     scene("nowhere.toml").assert_refused(&["nowhere.toml: cannot be read"]);
-    place.write(
-        "wrong.toml",
-        &SWEEP.replace("length_mm = 20", "length_mm = -20"),
-    );
+    place.write("wrong.toml", &SWEEP.replace("length_mm = 20", "length_mm = -20"));
     scene("wrong.toml").assert_refused(&["length_mm = -20"]);
 }
 
@@ -166,25 +144,14 @@ fn time_and_memory_are_proposed() {
     let run = place.good(&["submit", "scene.toml", "--shards=8"]);
     let value = |option: &str| {
         let line = format!("#SBATCH --{option}=");
-        let value = run
-            .out
-            .lines()
-            .find_map(|printed| printed.strip_prefix(&line));
-        value
-            .unwrap_or_else(|| panic!("no {line}: {run:?}"))
-            .to_owned()
+        let value = run.out.lines().find_map(|printed| printed.strip_prefix(&line));
+        value.unwrap_or_else(|| panic!("no {line}: {run:?}")).to_owned()
     };
     let minutes: u32 = value("time").split(':').nth(1).unwrap().parse().unwrap();
-    assert!(
-        value("time").starts_with("0:") && (6..30).contains(&minutes),
-        "{run:?}"
-    );
+    assert!(value("time").starts_with("0:") && (6..30).contains(&minutes), "{run:?}");
     assert_eq!(value("mem"), "100M");
     for option in ["time", "mem"] {
-        let note = format!(
-            "note: --{option} {} is proposed: a task takes ",
-            value(option)
-        );
+        let note = format!("note: --{option} {} is proposed: a task takes ", value(option));
         assert!(run.err.contains(&note), "{run:?}");
     }
     assert_eq!(run.err.lines().count(), 2, "{run:?}");
@@ -224,11 +191,7 @@ fn other_schedulers_fill_the_store_as_documented() {
     }\n";
     let lines = block("| parallel");
     let run = shell(&place, &["-ec", &format!("{parallel}{lines}")], &[]);
-    assert_eq!(
-        (run.code, run.count("of 8 blocks")),
-        (Some(0), 8),
-        "{run:?}"
-    );
+    assert_eq!((run.code, run.count("of 8 blocks")), (Some(0), 8), "{run:?}");
     as_whole();
 
     // The command of the indexed job runs for each index.

@@ -46,42 +46,23 @@ fn maps_name_their_whiskers() {
             "-",
         ]);
         assert_eq!(run.code, Some(2), "{run:?}");
-        let part = [
-            "extract",
-            source,
-            "--at",
-            "whisker=C3",
-            "--at",
-            "distance_mm=5",
-            "-o",
-            "c3.csv",
-        ];
+        let part =
+            ["extract", source, "--at", "whisker=C3", "--at", "distance_mm=5", "-o", "c3.csv"];
         let run = place.good(&part);
         assert!(run.err.contains("whisker = C3"), "{run:?}");
         assert!(!run.err.contains("are unresolved"), "{run:?}");
         let table = place.text("c3.csv");
         let mut lines = table.lines();
-        assert!(
-            lines
-                .next()
-                .unwrap()
-                .starts_with("whisker,distance_mm,push_angle_deg,regime,")
-        );
+        assert!(lines.next().unwrap().starts_with("whisker,distance_mm,push_angle_deg,regime,"));
         assert_eq!(lines.filter(|line| line.starts_with("C3,5.0,")).count(), 13);
         let none = place.run(&["extract", source, "--at", "whisker=c3", "-o", "none.csv"]);
         assert_eq!(none.code, Some(2));
-        assert!(
-            none.err
-                .contains("there is no whisker c3; must be one of C1, "),
-            "{none:?}"
-        );
+        assert!(none.err.contains("there is no whisker c3; must be one of C1, "), "{none:?}");
     }
     place.good(&words("extract scene.exr --at whisker=C3 -o c3.zarr"));
     let coordinate = place.text("c3.zarr/whisker/c.0");
     assert_eq!(coordinate, "\u{1}\0\0\0\u{2}\0\0\0C3");
-    place.good(&words(
-        "compare scene.exr scene.zarr --within regime=0,force_un=0",
-    ));
+    place.good(&words("compare scene.exr scene.zarr --within regime=0,force_un=0"));
     for source in ["scene.toml", "scene.zarr"] {
         let run = place.good(&["render", source, "-o", "pad.svg"]);
         assert!(!run.err.contains("are unresolved"), "{run:?}");
@@ -101,35 +82,17 @@ fn curves_have_the_reason_of_a_row_without_a_whisker() {
     assert_eq!(lines[5], empty);
     let one = place.run(&["curve", "scene.toml", "--at", "whisker=C3"]);
     assert_eq!(one.out.lines().skip(1).collect::<Vec<_>>(), lines[9..]);
-    let text = Scene::read(place.path("scene.toml"))
-        .unwrap()
-        .of_whisker(2)
-        .unwrap();
+    let text = Scene::read(place.path("scene.toml")).unwrap().of_whisker(2).unwrap();
     place.write("alone.toml", &text.to_toml());
     for command in [&["branch", "--distance", "10"][..], &["sensitivity"]] {
         let run = |file: &[&str]| place.run(&[command, file].concat());
-        let (selected, alone) = (
-            run(&["scene.toml", "--at", "whisker=C3"]),
-            run(&["alone.toml"]),
-        );
+        let (selected, alone) = (run(&["scene.toml", "--at", "whisker=C3"]), run(&["alone.toml"]));
         assert_eq!((selected.code, &selected.out), (Some(0), &alone.out));
     }
     let corner = place.run(&["curve", "scene.toml", "--corner"]);
-    assert!(
-        corner
-            .out
-            .contains("C2,tip_radius_um is missing,cf,,,no-whisker"),
-        "{corner:?}"
-    );
+    assert!(corner.out.contains("C2,tip_radius_um is missing,cf,,,no-whisker"), "{corner:?}");
     let derivatives = place.good(&["curve", "scene.toml", "--derivatives=taper"]);
-    assert!(
-        derivatives
-            .out
-            .lines()
-            .nth(1)
-            .unwrap()
-            .ends_with(|c: char| c.is_ascii_digit())
-    );
+    assert!(derivatives.out.lines().nth(1).unwrap().ends_with(|c: char| c.is_ascii_digit()));
 }
 
 #[test]
@@ -170,17 +133,10 @@ fn columns_share_the_names_of_axes() {
         place.run(&["curve", "scene.toml"])
     };
     let numbers = "name,length_mm,base_radius_um,tip_radius_um";
-    let [parabola, axis, straight] = [
-        (",parabola_per_mm", ",0.02"),
-        (",curvature_per_mm", ",0.02"),
-        (",notes", ",0.02"),
-    ]
-    .map(|(column, cell)| {
-        curve(
-            &format!("{numbers}{column}"),
-            &format!("C1,20,30,1.5{cell}"),
-        )
-    });
+    let [parabola, axis, straight] =
+        [(",parabola_per_mm", ",0.02"), (",curvature_per_mm", ",0.02"), (",notes", ",0.02")].map(
+            |(column, cell)| curve(&format!("{numbers}{column}"), &format!("C1,20,30,1.5{cell}")),
+        );
     assert_eq!((axis.code, &axis.out), (Some(0), &parabola.out), "{axis:?}");
     assert!(straight.err.starts_with("note: "), "{straight:?}");
     assert_ne!(axis.out, straight.out);
@@ -255,22 +211,13 @@ fn wrong_uses_of_tables_are_refused() {
             "name,length_mm\nC1,long\n",
             "pad.csv:2: length_mm = long: must be a number, or empty where it is missing",
         ),
-        (
-            "name,length_mm\nC1,20\n,21\n",
-            "line 3: the name of the whisker is missing",
-        ),
-        (
-            "name,size_mm,remark\nC1,2,good\n",
-            "row 1: whisker.length_mm: is left out; ",
-        ),
+        ("name,length_mm\nC1,20\n,21\n", "line 3: the name of the whisker is missing"),
+        ("name,size_mm,remark\nC1,2,good\n", "row 1: whisker.length_mm: is left out; "),
         (
             "name,size_mm,remark\nC1,2,good\n",
             "pad.csv:1: columns that are not used: size_mm, remark",
         ),
-        (
-            "name,profile\nC1,no.csv\n",
-            "line 2: profile: no.csv: cannot be read",
-        ),
+        ("name,profile\nC1,no.csv\n", "line 2: profile: no.csv: cannot be read"),
         (
             "name,length_mm\nC1,20\nC1,21\n",
             "line 3: the name of a whisker must be unlike those before it; row 1 is C1 too",

@@ -52,10 +52,7 @@ fn on_terminal(mut command: Command) -> [String; 2] {
     let mut options = fs::File::options();
     options.read(true).write(true).custom_flags(libc::O_NOCTTY);
     let program = options.open(name.to_str().unwrap()).unwrap();
-    command
-        .stdin(Stdio::null())
-        .stdout(program)
-        .stderr(Stdio::piped());
+    command.stdin(Stdio::null()).stdout(program).stderr(Stdio::piped());
     let child = command.spawn().unwrap();
     // The command holds the program's end of the terminal open.
     drop(command);
@@ -75,32 +72,22 @@ fn forge(place: &Place, text: &str, name: &str) {
     place.map(&["scene.toml", "--no-png", "-o", "."]);
     let map = StoredMap::open(&place.path("scene.exr")).unwrap();
     let scene = Scene::parse(SCENE, "scene.toml").unwrap();
-    let scene = SceneData {
-        title: text.to_owned(),
-        ..SceneData::clone(&scene)
-    };
+    let scene = SceneData { title: text.to_owned(), ..SceneData::clone(&scene) };
     let about = MapDescription {
         scene: &scene,
-        engine: &EngineDescription {
-            engine: text.to_owned(),
-            adapter: text.to_owned(),
-        },
+        engine: &EngineDescription { engine: text.to_owned(), adapter: text.to_owned() },
         tolerances: &serde_json::json!({ text: text }),
         channels: Channels::STANDARD,
         digits: Digits::ALL,
         arithmetic: text,
     };
     let path = place.path(name);
-    let mut writer = MapWriter::create(
-        Output::create(&path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut writer =
+        MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     let panel = MapSlice::from(map).panel(Channels::STANDARD, 0).unwrap();
     writer.write_panels(&[panel]).unwrap();
-    writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap();
+    writer.finish(EngineCells::default(), Audit::default()).unwrap();
     let mut bytes = place.bytes(name);
     // Texts of equal length: the version, which a warning names, and a regime.
     let version = concat!("\"", env!("CARGO_PKG_VERSION"), "\"");
@@ -109,9 +96,7 @@ fn forge(place: &Place, text: &str, name: &str) {
         let from = from.as_bytes();
         assert_eq!(from.len(), to.len());
         let starts = 0..bytes.len() - from.len();
-        let starts: Vec<usize> = starts
-            .filter(|start| bytes[*start..].starts_with(from))
-            .collect();
+        let starts: Vec<usize> = starts.filter(|start| bytes[*start..].starts_with(from)).collect();
         assert!(!starts.is_empty());
         for start in starts {
             bytes[start..][..from.len()].copy_from_slice(to.as_bytes());
@@ -224,10 +209,7 @@ fn no_command_lets_control_characters_through() {
         let header = format!("side,distance_mm,push_angle_deg,\"{text}\"\ncb,9,20,\"{text}\"\n");
         place.write(&format!("{text}.csv"), &header);
         fs::create_dir(place.path(&format!("{text}.zarr"))).unwrap();
-        place.write(
-            &format!("{text}.zarr/zarr.json"),
-            &format!("{{\"{text}\": 1}}"),
-        );
+        place.write(&format!("{text}.zarr/zarr.json"), &format!("{{\"{text}\": 1}}"));
         forge(&place, &text, &format!("{text}.exr"));
         for line in COMMANDS.lines() {
             let words = line.split(' ').map(|word| word.replace('X', &text));

@@ -39,27 +39,17 @@ fn a_sweep_gives_its_tables_and_its_picture() {
     let bins = place.text("h.csv");
     assert_eq!(cells(&bins, "tip_from_mm,tip_to_mm,tip_time_s").len(), 80);
     let svg = place.text("t.svg");
-    for label in [
-        "tip along the surface (mm)",
-        "dwell time on an asperity (s)",
-        "stuck",
-    ] {
+    for label in ["tip along the surface (mm)", "dwell time on an asperity (s)", "stuck"] {
         assert!(svg.contains(&format!(">{label}<")), "{label}");
     }
     // The same angles from a file, in other units.
     let angles = samples.iter().map(|row| format!("{},{}\n", row[0], row[1]));
-    place.write(
-        "a.csv",
-        &format!("time_s,angle_deg\n{}", angles.collect::<String>()),
-    );
+    place.write("a.csv", &format!("time_s,angle_deg\n{}", angles.collect::<String>()));
     let again = texture(&["--angles", "a.csv"]);
     assert_eq!(again.out, place.text("s.csv"));
     let other = texture(&["--angles", "a.csv", "--units", "um,mN"]).out;
     let header = other.lines().next().unwrap();
-    assert!(
-        header.contains(",tip_x_um,tip_height_um,force_mn,"),
-        "{header}"
-    );
+    assert!(header.contains(",tip_x_um,tip_height_um,force_mn,"), "{header}");
 }
 
 #[test]
@@ -67,10 +57,8 @@ fn a_sweep_needs_a_surface_and_no_friction() {
     Place::with(SCENE)
         .run(&["texture", "scene.toml"])
         .assert_refused(&["scene.toml: the scene has no [surface]: add that table"]);
-    let rough = format!(
-        "{}\n{SURFACE}",
-        SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]")
-    );
+    let rough =
+        format!("{}\n{SURFACE}", SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     Place::with(&rough)
         .run(&["texture", "scene.toml"])
         .assert_refused(&["contact.friction = 0.3: must be 0"]);
@@ -91,20 +79,9 @@ fn wrong_sweeps_are_refused() {
     let run = texture(&["--rate", "20", "--csv", "s.csv", "--events", "e.csv"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     let events = place.text("e.csv");
-    let touch: f64 = events
-        .lines()
-        .nth(1)
-        .unwrap()
-        .split(',')
-        .nth(4)
-        .unwrap()
-        .parse()
-        .unwrap();
+    let touch: f64 = events.lines().nth(1).unwrap().split(',').nth(4).unwrap().parse().unwrap();
     let begin = |angle: f64| {
-        place.write(
-            "a.csv",
-            &format!("time_s,angle_deg\n0,{angle:?}\n1,{:?}\n", angle + 1.0),
-        );
+        place.write("a.csv", &format!("time_s,angle_deg\n0,{angle:?}\n1,{:?}\n", angle + 1.0));
         texture(&["--angles", "a.csv"])
     };
     assert_eq!(begin(touch).code, Some(0));
@@ -136,10 +113,8 @@ fn samples_have_the_curvature_at_an_arclength() {
         .run(&[&sweep[..], &["--curvature-at", "21"]].concat())
         .assert_refused(&["--curvature-at: curvature_at_mm = 21: must be between 0 and 20"]);
     place.write("a.csv", "time_s,angle_deg\n0,0\n1,\n2,1\n");
-    place
-        .run(&["texture", "scene.toml", "--angles", "a.csv"])
-        .assert_refused(&[
-            "--angles a.csv: angle_deg[1] = NaN: must be between -90 and 90 deg",
-            "none may be missing",
-        ]);
+    place.run(&["texture", "scene.toml", "--angles", "a.csv"]).assert_refused(&[
+        "--angles a.csv: angle_deg[1] = NaN: must be between -90 and 90 deg",
+        "none may be missing",
+    ]);
 }

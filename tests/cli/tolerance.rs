@@ -11,9 +11,7 @@ fn the_selected_steps_are_printed_and_stored_with_the_map() {
     assert!(run.err.contains(BOUNDED), "{}", run.err);
     let map = whiskmap::store::StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
     let tolerances = map.attribute("tolerances").unwrap();
-    let estimate = tolerances["push_angle_error_estimated_deg"]
-        .as_f64()
-        .unwrap();
+    let estimate = tolerances["push_angle_error_estimated_deg"].as_f64().unwrap();
     assert!(estimate > 1e-12 && estimate <= 1e-6, "{tolerances}");
     assert_eq!(tolerances["bounded"], BOUNDED);
 }
@@ -25,8 +23,7 @@ fn a_curve_meets_its_tolerance() {
     let angles = |arguments: &[&str]| -> Vec<f64> {
         let run = place.good(&[&["curve", "scene.toml"][..], arguments].concat());
         let rows = run.out.lines().skip(1);
-        rows.filter_map(|row| row.split(',').nth(4).unwrap().parse().ok())
-            .collect()
+        rows.filter_map(|row| row.split(',').nth(4).unwrap().parse().ok()).collect()
     };
     let exact = angles(&[]);
     for tolerance in [1e-2, 1e-5] {
@@ -56,8 +53,5 @@ fn what_is_no_tolerance_is_refused() {
     }
     // The nearest pole is at a tenth of the length: there, a residual of 1e-12 is 6e-10 degrees.
     let run = place.run(&["curve", "scene.toml", "--tolerance", "1e-10deg"]);
-    run.assert_refused(&[
-        "must be at least",
-        "e-10deg, the estimated error of the finest steps",
-    ]);
+    run.assert_refused(&["must be at least", "e-10deg, the estimated error of the finest steps"]);
 }

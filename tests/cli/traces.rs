@@ -26,27 +26,19 @@ pub fn cells<'a>(text: &'a str, header: &str) -> Vec<Vec<&'a str>> {
 fn tables_and_plots_are_written_to_the_given_files() {
     let place = Place::with(SCENE);
     let shape = words("shape scene.toml --distance=15.66 --push-angle=-10");
-    for (arguments, header) in [
-        (&["curve", "scene.toml"][..], CURVE),
-        (&CB[..], BRANCH),
-        (&shape[..], SHAPE),
-    ] {
+    for (arguments, header) in
+        [(&["curve", "scene.toml"][..], CURVE), (&CB[..], BRANCH), (&shape[..], SHAPE)]
+    {
         let streamed = place.quiet(arguments).out;
         assert!(streamed.starts_with(header));
-        assert_eq!(
-            place.quiet(&[arguments, &["--csv", "-"]].concat()).out,
-            streamed
-        );
+        assert_eq!(place.quiet(&[arguments, &["--csv", "-"]].concat()).out, streamed);
         let files = ["--csv", "t.csv", "--plot", "p.PNG"];
         let run = place.quiet(&[arguments, &files].concat());
         assert_eq!(run.out, "t.csv\np.PNG\n");
         assert_eq!(place.bytes("t.csv"), streamed.as_bytes());
         assert!(place.bytes("p.PNG").starts_with(b"\x89PNG"));
         // With only a plot, standard output has its name.
-        assert_eq!(
-            place.quiet(&[arguments, &["--plot", "p.svg"]].concat()).out,
-            "p.svg\n"
-        );
+        assert_eq!(place.quiet(&[arguments, &["--plot", "p.svg"]].concat()).out, "p.svg\n");
         let svg = place.bytes("p.svg");
         assert!(svg.starts_with(b"<svg") || svg.starts_with(b"<?xml"));
         place.quiet(&[arguments, &["--plot", "p.svg"]].concat());
@@ -71,10 +63,7 @@ fn help_defines_the_columns() {
             .split("\nColumns")
             .skip(1)
             .map(|table| {
-                let lines = table
-                    .lines()
-                    .skip(1)
-                    .take_while(|line| line.starts_with("  "));
+                let lines = table.lines().skip(1).take_while(|line| line.starts_with("  "));
                 let names = lines.map(|line| {
                     let (name, meaning) = line.trim().split_once(' ').unwrap();
                     assert!(meaning.trim().len() > 10 && line.len() <= 100, "{line}");
@@ -110,43 +99,25 @@ fn wrong_arguments_are_refused_before_any_work() {
             place.run(&[start, more].concat()).assert_refused(parts);
         }
     };
-    refused(
-        &["--plot", "p.jpg"],
-        &["--plot p.jpg: must end in .png, .svg or .pdf"],
-    );
-    refused(
-        &["--plot", "nowhere/p.png"],
-        &[&format!("--plot nowhere/p.png: {}", no_folder())],
-    );
-    refused(
-        &["--csv", "nowhere/t.csv"],
-        &[&format!("--csv nowhere/t.csv: {}", no_folder())],
-    );
+    refused(&["--plot", "p.jpg"], &["--plot p.jpg: must end in .png, .svg or .pdf"]);
+    refused(&["--plot", "nowhere/p.png"], &[&format!("--plot nowhere/p.png: {}", no_folder())]);
+    refused(&["--csv", "nowhere/t.csv"], &[&format!("--csv nowhere/t.csv: {}", no_folder())]);
     refused(&["--csv", "."], &["--csv .: is a directory"]);
-    refused(
-        &["--csv", "t.svg", "--plot", "t.svg"],
-        &["must be two files"],
-    );
+    refused(&["--csv", "t.svg", "--plot", "t.svg"], &["must be two files"]);
     let push = words("shape scene.toml --distance 9 --push-angle 1e9");
     place
         .run(&push)
         .assert_refused(&["--push-angle 1000000000 deg: must be between -360 deg and 360 deg"]);
-    for few in [
-        &[&CB[..], &["--points", "2"]].concat(),
-        &[&push[..5], &["1", "--points", "1"]].concat(),
-    ] {
+    for few in
+        [&[&CB[..], &["--points", "2"]].concat(), &[&push[..5], &["1", "--points", "1"]].concat()]
+    {
         let run = place.run(few);
         assert_eq!(run.code, Some(2), "{run:?}");
         assert!(run.err.contains("--points"), "{run:?}");
     }
-    place.write(
-        "broken.toml",
-        &SCENE.replace("length_mm = 20", "length_mm = -20"),
-    );
+    place.write("broken.toml", &SCENE.replace("length_mm = 20", "length_mm = -20"));
     let key = ["whisker.length_mm = -20: must be between"];
     place.run(&["curve", "broken.toml"]).assert_refused(&key);
-    place
-        .run(&["branch", "broken.toml", "--distance", "9"])
-        .assert_refused(&key);
+    place.run(&["branch", "broken.toml", "--distance", "9"]).assert_refused(&key);
     assert_eq!(names(&place.path("")), ["broken.toml", "scene.toml"]);
 }

@@ -18,17 +18,11 @@ fn a_spread_is_a_table_and_bands() {
     assert_eq!(rows.len(), 48);
     let curve = place.quiet(&["curve", "scene.toml"]).out;
     for (row, curve) in rows.iter().zip(cells(&curve, CURVE)) {
-        assert_eq!(
-            (row[0], row[1], row[2], row[3]),
-            (curve[0], curve[1], curve[3], curve[4])
-        );
+        assert_eq!((row[0], row[1], row[2], row[3]), (curve[0], curve[1], curve[3], curve[4]));
         let counts = row[4..8].iter().map(|count| count.parse::<u32>().unwrap());
         assert_eq!(counts.sum::<u32>(), 20, "{row:?}");
         let percentiles: Vec<f64> = row[8..13].iter().flat_map(|p| p.parse()).collect();
-        assert!(
-            percentiles.is_sorted() && (percentiles.len() == 5 || row[6] == "20"),
-            "{row:?}"
-        );
+        assert!(percentiles.is_sorted() && (percentiles.len() == 5 || row[6] == "20"), "{row:?}");
     }
     // The default seed is 1.
     let seeded = |seed| place.quiet(&[&sample[..], &["--seed", seed]].concat()).out;
@@ -52,20 +46,14 @@ fn samples_and_measured_points_share_a_plot() {
     let curve = words("curve scene.toml --samples 20 --data points.csv");
     place.good(&[&curve[..], &["--csv", "t.csv", "--plot", "p.svg"]].concat());
     let table = place.text("t.csv");
-    let columns = format!(
-        "{},p5_deg,p25_deg,p50_deg,p75_deg,p95_deg",
-        super::data::POINTS
-    );
+    let columns = format!("{},p5_deg,p25_deg,p50_deg,p75_deg,p95_deg", super::data::POINTS);
     let rows = cells(&table, &columns);
     assert_eq!([rows[0][4], rows[1][4]], ["1.5", "0.5"]);
     // The same samples as without points.
     let alone = [&curve[..4], &["--distance", "10,15"]].concat();
     let alone = place.quiet(&alone).out;
     let spread = cells(&alone, SPREAD);
-    assert_eq!(
-        (spread[0][0], spread[1][0], spread[2][0]),
-        ("cf", "cf", "cb")
-    );
+    assert_eq!((spread[0][0], spread[1][0], spread[2][0]), ("cf", "cf", "cb"));
     // Measured: at most 4e-14 apart, because continuation starts elsewhere.
     for (row, alone) in [(&rows[0], &spread[2]), (&rows[1], &spread[1])] {
         for (cell, other) in row[10..].iter().zip(&alone[8..13]) {
@@ -79,10 +67,7 @@ fn samples_and_measured_points_share_a_plot() {
     assert_eq!(svg.matches("<circle").count(), 3, "{svg}");
     assert!(svg.contains(" \u{b1} standard deviation<"), "{svg}");
     assert_eq!(place.run(&curve).out, table);
-    place.write(
-        "points.csv",
-        &data.replace("push_angle_deg", "push_chord_deg"),
-    );
+    place.write("points.csv", &data.replace("push_angle_deg", "push_chord_deg"));
     let chords = place.run(&[&curve[..], &["--plot", "q.svg"]].concat());
     chords.assert_refused(&[
         "--samples: bands are of push angles, and points.csv has push_chord_deg",
@@ -102,10 +87,8 @@ fn other_commands_leave_the_table_alone() {
     place.write("plain.toml", SCENE);
     let both = |arguments: &[&str]| {
         let outs = ["scene.toml", "plain.toml"].map(|scene| {
-            let words: Vec<&str> = arguments
-                .iter()
-                .map(|word| if *word == "SCENE" { scene } else { word })
-                .collect();
+            let words: Vec<&str> =
+                arguments.iter().map(|word| if *word == "SCENE" { scene } else { word }).collect();
             place.quiet(&words).out
         });
         assert_eq!(outs[0], outs[1], "{arguments:?}");
@@ -113,9 +96,7 @@ fn other_commands_leave_the_table_alone() {
     both(&["curve", "SCENE"]);
     both(&["branch", "SCENE", "--distance=9"]);
     both(&["shape", "SCENE", "--distance=9", "--push-angle=9"]);
-    both(&words(
-        "design SCENE --distance=15.66 --slip-off=20 --for=taper",
-    ));
+    both(&words("design SCENE --distance=15.66 --slip-off=20 --for=taper"));
     place.map(&["scene.toml"]).assert_settled();
     place.quiet(&["render", "outputs/scene.exr", "-o", "again.png"]);
 }
@@ -125,10 +106,7 @@ fn draws_outside_of_the_limits_are_counted() {
     let place = Place::with(&format!("{SCENE}[uncertainty]\ntip_radius_um = 1.5\n"));
     let run = place.good(&["curve", "scene.toml", "--samples", "50"]);
     let warning = "draws were outside the scene's limits and were repeated\n";
-    assert!(
-        run.err.starts_with("note: ") && run.err.ends_with(warning),
-        "{run:?}"
-    );
+    assert!(run.err.starts_with("note: ") && run.err.ends_with(warning), "{run:?}");
 }
 
 #[test]
@@ -139,23 +117,15 @@ fn samples_without_sense_are_refused() {
     let missing = ["--samples 20: the scene has no [uncertainty]: add that table"];
     place.run(&sample).assert_refused(&missing);
     let refused = |more: &[&str], parts: &[&str]| {
-        place
-            .run(&[&["curve", "scene.toml"], more].concat())
-            .assert_refused(parts);
+        place.run(&[&["curve", "scene.toml"], more].concat()).assert_refused(parts);
     };
-    refused(
-        &["--samples", "1"],
-        &["'1'", "must be a whole number between 2 and 1000000"],
-    );
+    refused(&["--samples", "1"], &["'1'", "must be a whole number between 2 and 1000000"]);
     refused(&["--samples", "9", "--seed", "-1"], &["'-1'"]);
     refused(&["--seed", "9"], &["--samples"]);
     refused(&["--samples", "9", "--corner"], &["cannot be used with"]);
     refused(
         &["--samples", "1000000"],
-        &[
-            "--samples 1000000: makes 24000000 ends at the scene's 24 distances",
-            "at most 16777216",
-        ],
+        &["--samples 1000000: makes 24000000 ends at the scene's 24 distances", "at most 16777216"],
     );
     let sweep = format!("{SCENE}curvature_per_mm = [0.02]\n{UNCERTAIN}");
     place.write("sweep.toml", &sweep);
@@ -180,12 +150,6 @@ fn largest_loads_are_more_columns() {
         let more = largest.strip_prefix(&format!("{end},")).unwrap();
         assert_eq!(more.split(',').count(), 24, "{more}");
     }
-    assert!(
-        largest[0].ends_with(",max_strain_mean,max_strain_sd"),
-        "{}",
-        largest[0]
-    );
-    place
-        .run(&["curve", "scene.toml", "--largest"])
-        .assert_refused(&["--samples <N>"]);
+    assert!(largest[0].ends_with(",max_strain_mean,max_strain_sd"), "{}", largest[0]);
+    place.run(&["curve", "scene.toml", "--largest"]).assert_refused(&["--samples <N>"]);
 }

@@ -6,35 +6,17 @@ use super::{Place, SCENE, words};
 fn distances_and_angles_take_units() {
     let place = Place::with(SCENE);
     let shape = |distance: &str, angle: &str| {
-        let words = [
-            "shape",
-            "scene.toml",
-            "--distance",
-            distance,
-            "--push-angle",
-            angle,
-        ];
+        let words = ["shape", "scene.toml", "--distance", distance, "--push-angle", angle];
         place.quiet(&words).out
     };
     let plain = shape("15", "5");
-    for (distance, angle) in [
-        ("15mm", "5deg"),
-        ("1.5cm", "5°"),
-        ("15000um", "0.08726646259971647rad"),
-    ] {
+    for (distance, angle) in
+        [("15mm", "5deg"), ("1.5cm", "5°"), ("15000um", "0.08726646259971647rad")]
+    {
         assert!(shape(distance, angle) == plain, "{distance} {angle}");
     }
     let branch = |distances: &str| {
-        place
-            .good(&[
-                "branch",
-                "scene.toml",
-                "--points",
-                "9",
-                "--distance",
-                distances,
-            ])
-            .out
+        place.good(&["branch", "scene.toml", "--points", "9", "--distance", distances]).out
     };
     assert_eq!(branch("10,1.5cm"), branch("10,15"));
 }
@@ -48,14 +30,7 @@ fn messages_name_units() {
         ("15", "7rad", " deg: must be between -360 deg and 360 deg"),
         ("1m", "5", "--distance 1000 mm: must be between 0.02 mm"),
     ] {
-        let words = [
-            "shape",
-            "scene.toml",
-            "--distance",
-            distance,
-            "--push-angle",
-            angle,
-        ];
+        let words = ["shape", "scene.toml", "--distance", distance, "--push-angle", angle];
         place.run(&words).assert_refused(&[said]);
     }
 }
@@ -63,11 +38,7 @@ fn messages_name_units() {
 /// Each command that reads a scene warns, once.
 #[test]
 fn numbers_in_other_units_are_warned_of() {
-    let place = Place::with(
-        &SCENE
-            .replace("count = 24", "count = 3")
-            .replace("= 3.0", "= 3000"),
-    );
+    let place = Place::with(&SCENE.replace("count = 24", "count = 3").replace("= 3.0", "= 3000"));
     place.write("points.csv", super::data::DATA);
     let warning =
         "warning: whisker.youngs_modulus_gpa = 3000 GPa: expected 0.1 to 250 GPa; is it in MPa?\n";

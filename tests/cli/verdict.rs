@@ -15,10 +15,7 @@ fn values_that_are_not_a_fit_are_reported() {
     let run = place.run(&[&FIT[..], &more].concat());
     assert_eq!(run.code, Some(1), "{run:?}");
     assert!(run.out.contains("\nnot a fit\n"), "{run:?}");
-    let line = run
-        .out
-        .lines()
-        .find(|line| line.starts_with("tip_radius_um"));
+    let line = run.out.lines().find(|line| line.starts_with("tip_radius_um"));
     assert!(line.unwrap().ends_with("not a fit"), "{run:?}");
     for part in [
         "error: not a fit: RMS ",
@@ -27,18 +24,10 @@ fn values_that_are_not_a_fit_are_reported() {
     ] {
         assert!(run.err.contains(part), "no {part:?} in {run:?}");
     }
-    assert_eq!(
-        names(&place.path("")),
-        ["fit.json", "points.csv", "scene.toml"]
-    );
+    assert_eq!(names(&place.path("")), ["fit.json", "points.csv", "scene.toml"]);
     let found = json(&place, "fit.json");
     assert_eq!(found["standard_errors"]["tip_radius_um"], Value::Null);
-    assert!(
-        found["not_a_fit"]
-            .as_str()
-            .unwrap()
-            .starts_with("not a fit: RMS ")
-    );
+    assert!(found["not_a_fit"].as_str().unwrap().starts_with("not a fit: RMS "));
     let streamed = place.run(&[&FIT[..], &more[..2], &["-o", "-"]].concat());
     streamed.assert_said(1, "radians?; no scene is written to standard output\n");
     assert!(streamed.out.contains("\nnot a fit\n"), "{streamed:?}");

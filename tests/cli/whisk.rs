@@ -16,38 +16,16 @@ fn a_sine_and_its_angles_give_one_course() {
     let sine = ["--sine", "40deg, 10, 0.1", "--rate", "500"];
     let run = whisk(
         &place,
-        &[
-            &sine[..],
-            &["--events", "e.csv", "--csv", "s.csv", "--plot", "w.svg"],
-        ]
-        .concat(),
+        &[&sine[..], &["--events", "e.csv", "--csv", "s.csv", "--plot", "w.svg"]].concat(),
     );
-    assert_eq!(
-        (run.code, &*run.out),
-        (Some(0), "s.csv\nw.svg\ne.csv\n"),
-        "{run:?}"
-    );
-    assert!(
-        run.err
-            .contains("slip-offs 2, pull-offs 0; detachments lose 9.68466 nJ"),
-        "{run:?}"
-    );
+    assert_eq!((run.code, &*run.out), (Some(0), "s.csv\nw.svg\ne.csv\n"), "{run:?}");
+    assert!(run.err.contains("slip-offs 2, pull-offs 0; detachments lose 9.68466 nJ"), "{run:?}");
     let header = "time_s,event,side,angle_deg,push_angle_deg,force_un,contact_force_un,base_moment_nnm,energy_nj,snaps_deg";
     let events = place.text("e.csv");
     let events = cells(&events, header);
     let kinds: Vec<_> = events.iter().map(|event| [event[1], event[2]]).collect();
-    assert_eq!(
-        kinds,
-        [
-            ["touch", "cb"],
-            ["slip-off", "cb"],
-            ["touch", "cf"],
-            ["slip-off", "cf"]
-        ]
-    );
-    let curve = place
-        .quiet(&["curve", "scene.toml", "--distance", "15.66"])
-        .out;
+    assert_eq!(kinds, [["touch", "cb"], ["slip-off", "cb"], ["touch", "cf"], ["slip-off", "cf"]]);
+    let curve = place.quiet(&["curve", "scene.toml", "--distance", "15.66"]).out;
     let end: Vec<&str> = curve.lines().nth(2).unwrap().split(',').collect();
     let [push, wanted]: [f64; 2] = [events[1][3], end[4]].map(|cell| cell.parse().unwrap());
     assert!((push - wanted).abs() < 1e-9, "{push} {wanted}");
@@ -65,10 +43,7 @@ fn a_sine_and_its_angles_give_one_course() {
     }
     // The three plots share one axis of times, on paper, too.
     assert_eq!(svg.matches(">time (s)<").count(), 1);
-    let paper = whisk(
-        &place,
-        &[&sine[..], &["--plot", "paper.svg", "--size", "85mm"]].concat(),
-    );
+    let paper = whisk(&place, &[&sine[..], &["--plot", "paper.svg", "--size", "85mm"]].concat());
     assert_eq!(paper.code, Some(0), "{paper:?}");
     let times = place.text("paper.svg");
     assert!(
@@ -76,9 +51,8 @@ fn a_sine_and_its_angles_give_one_course() {
         "{times}"
     );
     let table = place.text("s.csv");
-    let angles = table
-        .lines()
-        .map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(","));
+    let angles =
+        table.lines().map(|line| line.splitn(3, ',').take(2).collect::<Vec<_>>().join(","));
     place.write("angles.csv", &angles.collect::<Vec<_>>().join("\n"));
     let again = whisk(&place, &["--angles", "angles.csv"]);
     assert_eq!((again.code, again.out), (Some(0), table), "{}", again.err);
@@ -139,10 +113,7 @@ fn a_start_beyond_first_touch_is_named() {
     assert!(run.out.contains(",free,"), "{run:?}");
     for (start, regime) in [("free", ",free,"), ("contact", ",contact,cb,10.0,")] {
         let run = whisk(&place, &[&angles[..], &["--start", start]].concat());
-        assert!(
-            run.code == Some(0) && !run.err.contains("warning"),
-            "{run:?}"
-        );
+        assert!(run.code == Some(0) && !run.err.contains("warning"), "{run:?}");
         assert!(run.out.contains(regime), "{run:?}");
     }
     place.write("a.csv", "time_s,angle_deg\n0,20\n1,12\n");
@@ -154,10 +125,7 @@ fn a_start_beyond_first_touch_is_named() {
 #[test]
 fn gaps_are_rows_with_a_reason() {
     let place = Place::with(SCENE);
-    place.write(
-        "a.csv",
-        "time_s,angle_deg\n0,-5\n0.01,5\n0.02,\n0.03,NaN\n0.04,10\n",
-    );
+    place.write("a.csv", "time_s,angle_deg\n0,-5\n0.01,5\n0.02,\n0.03,NaN\n0.04,10\n");
     let reasons = |run: &super::Run| -> Vec<String> {
         let cells = run.out.lines().skip(1).map(|line| line.rsplit(',').next());
         cells.map(|cell| cell.unwrap().to_owned()).collect()
@@ -167,34 +135,18 @@ fn gaps_are_rows_with_a_reason() {
     assert_eq!(reasons(&run), ["", "", "missing", "missing", "after-gap"]);
     let warned = "warning: missing angles: 2, gaps: 1, the first at 0.02 s: after them the course is undecided";
     assert!(run.err.contains(warned), "{run:?}");
-    assert!(
-        run.err.contains("detachments lose an unknown energy"),
-        "{run:?}"
-    );
+    assert!(run.err.contains("detachments lose an unknown energy"), "{run:?}");
     let run = whisk(&place, &["--angles", "a.csv", "--bridge", "30ms"]);
     assert_eq!(run.code, Some(0), "{run:?}");
     assert_eq!(reasons(&run), ["", "", "bridged", "bridged", ""]);
     let said = "the course continues along straight lines across them, the longest of 0.03 s";
     assert!(run.err.contains(said), "{run:?}");
     for (options, said) in [
-        (
-            &["--bridge", "0"][..],
-            "--bridge <TIME>': must be a positive time",
-        ),
-        (
-            &["--bridge", "20mm"],
-            "unit mm: must be s (the default), ms or us",
-        ),
-        (
-            &["--bridge", "20ms", "--sine", "1,1,1"],
-            "cannot be used with",
-        ),
+        (&["--bridge", "0"][..], "--bridge <TIME>': must be a positive time"),
+        (&["--bridge", "20mm"], "unit mm: must be s (the default), ms or us"),
+        (&["--bridge", "20ms", "--sine", "1,1,1"], "cannot be used with"),
     ] {
-        let course: &[&str] = if options.len() > 2 {
-            &[]
-        } else {
-            &["--angles", "a.csv"]
-        };
+        let course: &[&str] = if options.len() > 2 { &[] } else { &["--angles", "a.csv"] };
         whisk(&place, &[course, options].concat()).assert_refused(&[said]);
     }
     place.write("a.csv", "time_s,angle_deg\n0,\n0.01,5\n");
@@ -210,27 +162,15 @@ fn samples_have_the_curvature_at_an_arclength() {
         let sine = ["--sine", "12,10,0.1", "--rate", "100"];
         let run = whisk(&place, &[&sine[..], more].concat());
         assert_eq!(run.code, Some(0), "{run:?}");
-        let mut lines = run
-            .out
-            .lines()
-            .map(|line| line.split(',').collect::<Vec<_>>());
+        let mut lines = run.out.lines().map(|line| line.split(',').collect::<Vec<_>>());
         let header = lines.next().unwrap();
-        let place = header
-            .iter()
-            .position(|name| *name == "curvature_per_mm")
-            .unwrap();
+        let place = header.iter().position(|name| *name == "curvature_per_mm").unwrap();
         lines.map(|line| line[place].to_owned()).collect()
     };
     let curvatures = column(&["--curvature-at", "2mm"]);
     assert_eq!(curvatures, column(&["--curvature-at", "0.2cm"]));
-    assert!(
-        curvatures.iter().all(|cell| cell.parse::<f64>().is_ok()),
-        "{curvatures:?}"
-    );
-    assert!(
-        curvatures.iter().any(|cell| *cell != curvatures[0]),
-        "{curvatures:?}"
-    );
+    assert!(curvatures.iter().all(|cell| cell.parse::<f64>().is_ok()), "{curvatures:?}");
+    assert!(curvatures.iter().any(|cell| *cell != curvatures[0]), "{curvatures:?}");
     assert!(column(&[]).iter().all(String::is_empty));
     for (at, said) in [
         (

@@ -12,13 +12,7 @@ use std::process::{Child, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 
-const SHAPE: [&str; 5] = [
-    "shape",
-    "scene.toml",
-    "--distance=9",
-    "--push-angle=1",
-    "--csv=t.csv",
-];
+const SHAPE: [&str; 5] = ["shape", "scene.toml", "--distance=9", "--push-angle=1", "--csv=t.csv"];
 
 #[test]
 fn names_in_another_case_are_one_file() {
@@ -57,10 +51,7 @@ fn paths_have_backslashes_spaces_and_any_letters() {
     let scene = place.path("scene.toml");
     let table = place.quiet(&["curve", scene.to_str().unwrap()]).out;
     let verbatim = scene.canonicalize().unwrap();
-    assert_eq!(
-        place.quiet(&["curve", verbatim.to_str().unwrap()]).out,
-        table
-    );
+    assert_eq!(place.quiet(&["curve", verbatim.to_str().unwrap()]).out, table);
     assert!(!table.contains('\r'));
 }
 
@@ -107,11 +98,7 @@ fn readers_see_whole_files_only() {
 fn a_table_that_another_program_holds_is_refused_before_any_work() {
     let place = Place::with(SCENE);
     place.write("t.csv", "old");
-    let held = File::options()
-        .read(true)
-        .share_mode(0)
-        .open(place.path("t.csv"))
-        .unwrap();
+    let held = File::options().read(true).share_mode(0).open(place.path("t.csv")).unwrap();
     let run = place.run(&SHAPE);
     run.assert_refused(&["--csv t.csv: ", "name a file that can be written"]);
     drop(held);

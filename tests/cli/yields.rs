@@ -5,10 +5,7 @@ use whiskmap::store::MapSource;
 
 /// Scene with a yield strain, which some of its states exceed.
 fn yielding(strain: f64) -> String {
-    SCENE.replace(
-        "[whisker]\n",
-        &format!("[whisker]\nyield_strain = {strain}\n"),
-    )
+    SCENE.replace("[whisker]\n", &format!("[whisker]\nyield_strain = {strain}\n"))
 }
 
 /// Returns the cells of a column of a table, `[row]`; `None` without the column. Names of files below the table are left out.
@@ -16,9 +13,7 @@ fn column(text: &str, name: &str) -> Option<Vec<String>> {
     let lines = text.lines().filter(|line| line.contains(','));
     let mut lines = lines.map(|line| line.split(','));
     let place = lines.next()?.position(|cell| cell == name)?;
-    lines
-        .map(|mut line| Some(line.nth(place)?.to_owned()))
-        .collect()
+    lines.map(|mut line| Some(line.nth(place)?.to_owned())).collect()
 }
 
 /// Frames of the scene's whisker: free, and in contact.
@@ -38,45 +33,17 @@ fn tables_have_a_mark() {
     let at = "--distance=10";
     for (words, value, last) in [
         (&["curve", at][..], "max_strain", "max_strain,yields"),
-        (
-            &["curve", at, "--derivatives=taper"],
-            "max_strain",
-            "max_strain,yields",
-        ),
-        (
-            &["curve", at, "--units=mN,Nmm"],
-            "max_strain",
-            "max_strain,yields",
-        ),
-        (
-            &["curve", at, "--samples=3", "--largest"],
-            "max_strain",
-            "yields",
-        ),
+        (&["curve", at, "--derivatives=taper"], "max_strain", "max_strain,yields"),
+        (&["curve", at, "--units=mN,Nmm"], "max_strain", "max_strain,yields"),
+        (&["curve", at, "--samples=3", "--largest"], "max_strain", "yields"),
         (&["curve", "--corner"], "max_strain", "max_strain,yields"),
-        (
-            &["force", "--frames=frames.csv", "--model"],
-            "peak_strain",
-            "peak_strain,yields",
-        ),
+        (&["force", "--frames=frames.csv", "--model"], "peak_strain", "peak_strain,yields"),
         (&["branch", at], "peak_strain", "yields"),
         (&["shape", at, "--push-angle=30"], "strain", "yields"),
-        (
-            &["shape", at, "--push-angle=30", "--csv=s.csv", "--state=-"],
-            "peak_strain",
-            "yields",
-        ),
+        (&["shape", at, "--push-angle=30", "--csv=s.csv", "--state=-"], "peak_strain", "yields"),
         (&["sensitivity", at], "max_strain", "yields"),
-        (
-            &["whisk", at, "--sine=45deg,1,1", "--rate=40"],
-            "peak_strain",
-            "peak_strain,yields",
-        ),
-        (
-            &["texture", "--sine=15deg,1,1", "--rate=40"],
-            "peak_strain",
-            "peak_strain,yields",
-        ),
+        (&["whisk", at, "--sine=45deg,1,1", "--rate=40"], "peak_strain", "peak_strain,yields"),
+        (&["texture", "--sine=15deg,1,1", "--rate=40"], "peak_strain", "peak_strain,yields"),
         (
             &["locate", "--base-moment=260nNm", "--base-force-y=26uN"],
             "peak_strain",
@@ -124,24 +91,14 @@ fn tables_have_a_mark() {
 fn rows_of_a_table_have_their_own_yield_strains() {
     const LEGEND: &str = "beyond the yield strain";
     let place = Place::with(&format!("{SCENE}[whiskers]\ntable = 'w.csv'\n"));
-    place.write(
-        "w.csv",
-        "name,yield_strain\nunknown,\nsoft,0.002\nstrong,0.9\nbad,2\n",
-    );
+    place.write("w.csv", "name,yield_strain\nunknown,\nsoft,0.002\nstrong,0.9\nbad,2\n");
     let curve = place.good(&["curve", "scene.toml", "--distance=10"]);
     let marks = ["", "", "true", "true", "false", "false", "", ""];
     assert_eq!(column(&curve.out, "yields").unwrap(), marks);
     let reason = "whisker.yield_strain = 2: must be more than 0 and at most 1";
     assert!(curve.err.contains(&format!("bad ({reason})")), "{curve:?}");
     let corner = place.good(&["curve", "scene.toml", "--corner"]);
-    assert!(
-        corner
-            .out
-            .lines()
-            .next()
-            .unwrap()
-            .ends_with("max_strain,yields")
-    );
+    assert!(corner.out.lines().next().unwrap().ends_with("max_strain,yields"));
     let of =
         |words: &[&str]| place.good(&[words, &["--distance=10", "--at=whisker=soft"]].concat());
     assert!(of(&["branch", "scene.toml"]).out.contains(",true\n"));
@@ -168,13 +125,9 @@ fn rows_of_a_table_have_their_own_yield_strains() {
     // The text of the map has the rows of the file.
     let again = MapSource::open(&place.path("outputs/scene.exr")).unwrap();
     let scene = again.scene().unwrap().unwrap();
-    let strains = scene
-        .whiskers()
-        .map(|found| found.ok().and_then(|swept| swept.whisker.yield_strain));
-    assert_eq!(
-        strains.collect::<Vec<_>>(),
-        [None, Some(0.002), Some(0.9), None]
-    );
+    let strains =
+        scene.whiskers().map(|found| found.ok().and_then(|swept| swept.whisker.yield_strain));
+    assert_eq!(strains.collect::<Vec<_>>(), [None, Some(0.002), Some(0.9), None]);
 }
 
 /// Maps and stores have the channel, and pictures hatch cells beyond the yield strain.
@@ -193,11 +146,7 @@ fn maps_have_strains_and_hatched_cells() {
     place.map(&["elastic.toml", "-o", "elastic"]);
     for (name, has_strain) in [("outputs/scene.exr", true), ("elastic/elastic.exr", false)] {
         let map = MapSource::open(&place.path(name)).unwrap();
-        assert_eq!(
-            map.channels().contains(&"peak_strain"),
-            has_strain,
-            "{name}"
-        );
+        assert_eq!(map.channels().contains(&"peak_strain"), has_strain, "{name}");
     }
     for channel in [&[][..], &["--channel=force_un"], &["--channel=peak_strain"]] {
         for map in ["outputs/scene.exr", "scene.toml"] {
@@ -225,9 +174,7 @@ fn maps_have_strains_and_hatched_cells() {
         let picture = place.text("s.svg");
         assert_eq!(picture.contains(LEGEND), has_marks, "{scene}");
         // A point has one comma. The line of the legend has two points.
-        let dashed = picture
-            .lines()
-            .filter(|line| line.contains("stroke-dasharray"));
+        let dashed = picture.lines().filter(|line| line.contains("stroke-dasharray"));
         let points: usize = dashed.map(|line| line.matches(',').count()).sum();
         assert_eq!(points, if has_marks { count + 2 } else { 0 }, "{scene}");
     }
@@ -241,9 +188,7 @@ fn maps_have_strains_and_hatched_cells() {
         ["scene.toml", "elastic.toml", "strong.toml"].map(|scene| body(&svg(&["render", scene]).0));
     assert!(marked != plain && strong == plain);
     // On demand, and left out.
-    place.good(&words(
-        "map elastic.toml -o asked --channels=regime,peak_strain",
-    ));
+    place.good(&words("map elastic.toml -o asked --channels=regime,peak_strain"));
     let asked = MapSource::open(&place.path("asked/elastic.exr")).unwrap();
     assert_eq!(asked.channels(), ["regime", "peak_strain"]);
     place.good(&words("map scene.toml -o few --channels=regime,margin_deg"));
@@ -262,10 +207,7 @@ fn both_marks_are_in_one_line_of_the_legend() {
     let place = Place::with(&rough);
     place.good(&["render", "scene.toml", "--channel=force_un", "-o", "s.svg"]);
     let picture = place.text("s.svg");
-    assert!(
-        picture.contains("slides to base, or sticks, or beyond the yield strain"),
-        "{picture}"
-    );
+    assert!(picture.contains("slides to base, or sticks, or beyond the yield strain"), "{picture}");
 }
 
 /// An EXR map, a store and a table have the same strains, and a run of a store with another yield strain is refused.
@@ -320,10 +262,8 @@ fn a_design_names_the_strain_of_a_solution() {
         )
     );
     // Of several parameters, the strain is the target.
-    let several = design(
-        0.003,
-        &words("--slip-off=20deg --max-strain=0.004 --for=base_radius_um,taper"),
-    );
+    let several =
+        design(0.003, &words("--slip-off=20deg --max-strain=0.004 --for=base_radius_um,taper"));
     assert!(
         several.err.contains("base_radius_um = 56.")
             && several.err.contains("of the push, 0.004, exceeds"),

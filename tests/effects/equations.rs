@@ -21,11 +21,7 @@ fn plainly(condition: &InitialCondition, steps: u32) -> DVec2 {
     };
     let slope = |s: f64, [theta, x, _]: [f64; 3]| {
         let _ = theta;
-        [
-            at_rest(s) - force * x / rod.stiffness(s),
-            theta.cos(),
-            theta.sin(),
-        ]
+        [at_rest(s) - force * x / rod.stiffness(s), theta.cos(), theta.sin()]
     };
     let mut y = [rod.friction.atan(), 0.0, 0.0];
     let mut from = arclength(rod, *tau);
@@ -73,10 +69,7 @@ fn derivatives_agree_with_differences_in_every_set() {
     for effects in effect_sets::all() {
         let method = with(effects, Resolution::FINE);
         for condition in conditions(effects, 40) {
-            let scale = [
-                condition.tau,
-                condition.load.abs() + 1.0 / condition.tau.powi(2),
-            ];
+            let scale = [condition.tau, condition.load.abs() + 1.0 / condition.tau.powi(2)];
             let moved = |axis: usize, sign: f64| {
                 let mut moved = condition;
                 [&mut moved.tau, &mut moved.load]
@@ -94,25 +87,17 @@ fn derivatives_agree_with_differences_in_every_set() {
                 let (after, before) = (moved(axis, 1.0), moved(axis, -1.0));
                 let width = 2.0 * STEP * scale[axis];
                 let ratio = DVec2::new(before.pole.x, -before.pole.y).rotate(after.pole);
-                let ln = DVec2::new(
-                    (after.pole.length() / before.pole.length()).ln(),
-                    ratio.to_angle(),
-                );
+                let ln =
+                    DVec2::new((after.pole.length() / before.pole.length()).ln(), ratio.to_angle());
                 let close = |a: DVec2, b: DVec2, unit: f64| a.distance(b) * unit < 1e-6;
                 let size = scale[axis] / (1.0 + first.length() * scale[axis]);
                 assert!(close(ln / width, first, size), "{effects:?} {condition:?}");
-                let by = [
-                    (after.by_tau, before.by_tau),
-                    (after.by_load, before.by_load),
-                ];
+                let by = [(after.by_tau, before.by_tau), (after.by_load, before.by_load)];
                 for (other, ((after, before), second)) in by.into_iter().zip(second).enumerate() {
                     let size = scale[axis] * scale[other];
                     let size = size / (1.0 + second.length() * size);
                     let found = (after - before) / width;
-                    assert!(
-                        close(found, second, size),
-                        "{effects:?} {axis} {other} {condition:?}"
-                    );
+                    assert!(close(found, second, size), "{effects:?} {axis} {other} {condition:?}");
                 }
             }
         }
@@ -123,12 +108,9 @@ fn derivatives_agree_with_differences_in_every_set() {
 /// and modulus are those at the real arclength.
 #[test]
 fn radius_and_modulus_are_read_at_the_real_arclength() {
-    for (tip_um, tip_to_base, arc_stretch) in [
-        (30.0, 1.9, 1.5),
-        (30.0, 0.6, 1.3),
-        (12.0, 2.5, 1.4),
-        (12.0, 0.5, 1.0),
-    ] {
+    for (tip_um, tip_to_base, arc_stretch) in
+        [(30.0, 1.9, 1.5), (30.0, 0.6, 1.3), (12.0, 2.5, 1.4), (12.0, 0.5, 1.0)]
+    {
         let scene = Scene::parse(
             &format!(
                 "title = 'drooping'\n[whisker]\nlength_mm = 20\nbase_radius_um = 30\ntip_radius_um = {tip_um}\n\
@@ -154,11 +136,7 @@ fn radius_and_modulus_are_read_at_the_real_arclength() {
             .map(|sum| force * h / 6.0 * sum)
             .sum();
         let tau = rod.tau(contact);
-        let condition = InitialCondition {
-            rod: &rod,
-            tau,
-            load: force / rod.radius(tau).powi(2),
-        };
+        let condition = InitialCondition { rod: &rod, tau, load: force / rod.radius(tau).powi(2) };
         let state = Batch::new(Method::fine()).shoot::<FirstVariation>(&[condition])[0];
         let turned = state.full.tangent.to_angle().abs();
         // What is left is of the third order in the force.

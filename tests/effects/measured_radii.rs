@@ -28,38 +28,21 @@ fn rows_do_not_cost_the_order() {
             errors.fold(0.0, |worst: f64, (a, b)| worst.max(a.pole.distance(b.pole)))
         };
         let order = (worst(&rough) / worst(&half)).log2();
-        assert!(
-            (6.3..7.5).contains(&order),
-            "{effects:?}: {order}, {:e}",
-            worst(&half)
-        );
+        assert!((6.3..7.5).contains(&order), "{effects:?}: {order}, {:e}", worst(&half));
     }
 }
 
 /// A cone in 200 rows is the cone, also where a contact near the base leaves it a piece or two to bend. Measured: 6e-14.
 #[test]
 fn many_rows_are_fine_at_every_contact() {
-    let rows: Vec<[f64; 2]> = (0..=200)
-        .map(|i| f64::from(i) / 200.0)
-        .map(|s| [s, 1.0 - 0.95 * s])
-        .collect();
-    let cone = Rod {
-        taper: 0.95,
-        pole: 0.003,
-        ..Rod::default()
-    };
-    let measured = Rod {
-        profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
-        ..cone.clone()
-    };
+    let rows: Vec<[f64; 2]> =
+        (0..=200).map(|i| f64::from(i) / 200.0).map(|s| [s, 1.0 - 0.95 * s]).collect();
+    let cone = Rod { taper: 0.95, pole: 0.003, ..Rod::default() };
+    let measured = Rod { profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))), ..cone.clone() };
     for s in [0.002, 0.004, 0.0075, 0.03, 0.3, 0.9, 0.999] {
         for q in [1.0, 6.0, 12.0] {
             let pole = |rod: &Rod, resolution: Resolution| {
-                let condition = InitialCondition {
-                    rod,
-                    tau: cone.tau(s),
-                    load: q / (s * s),
-                };
+                let condition = InitialCondition { rod, tau: cone.tau(s), load: q / (s * s) };
                 Batch::new(Method::new(resolution)).shoot::<ShootingMap>(&[condition])[0].pole
             };
             let apart =

@@ -21,7 +21,5 @@ fn kept(rod: Rod) -> &'static Rod {
 
 fn conditions(effects: Effects, count: usize) -> Vec<InitialCondition<'static>> {
     let mut random = Random::new(21);
-    (0..count)
-        .map(|_| condition(kept(rod(effects, &mut random)), 6.5, &mut random))
-        .collect()
+    (0..count).map(|_| condition(kept(rod(effects, &mut random)), 6.5, &mut random)).collect()
 }

@@ -27,39 +27,24 @@ fn farthest(one: Effects, other: Effects, pairs: &[Pair]) -> f64 {
 /// to 6e-12 (measured) the truncation of a cone of taper 0.99.
 #[test]
 fn neutral_values_are_absence() {
-    let tapered = Effects {
-        taper: true,
-        ..Effects::default()
-    };
+    let tapered = Effects { taper: true, ..Effects::default() };
     // The turn of a mount is rounded to 256 times the rounding of numbers.
     let clamped = |condition: InitialCondition| InitialCondition {
-        rod: kept(Rod {
-            mount: 0.0,
-            ..condition.rod.clone()
-        }),
+        rod: kept(Rod { mount: 0.0, ..condition.rod.clone() }),
         ..condition
     };
     let usual: Vec<InitialCondition> = conditions(tapered, 200).into_iter().map(clamped).collect();
-    let spiral = Effects {
-        spiral: true,
-        ..tapered
-    };
+    let spiral = Effects { spiral: true, ..tapered };
     let unbent: Vec<Pair> = usual
         .iter()
         .map(|condition| {
-            let rod = kept(Rod {
-                spiral: Some([0.0, 0.0]),
-                ..condition.rod.clone()
-            });
+            let rod = kept(Rod { spiral: Some([0.0, 0.0]), ..condition.rod.clone() });
             (*condition, InitialCondition { rod, ..*condition })
         })
         .collect();
     assert!(farthest(tapered, spiral, &unbent) < 1e-14);
 
-    let profile = Effects {
-        profile: true,
-        ..tapered
-    };
+    let profile = Effects { profile: true, ..tapered };
     let measured: Vec<Pair> = usual
         .iter()
         .map(|condition| {
@@ -79,27 +64,14 @@ fn neutral_values_are_absence() {
 /// The curvature of the parabola is `2 A (1 - 6 A^2 s^2 + ...)`: a circular arc differs in the third order.
 #[test]
 fn a_faint_parabola_is_a_circular_arc_to_third_order() {
-    let bent = Effects {
-        taper: true,
-        curvature: true,
-        ..Effects::default()
-    };
-    let arc = Effects {
-        spiral: true,
-        curvature: false,
-        ..bent
-    };
+    let bent = Effects { taper: true, curvature: true, ..Effects::default() };
+    let arc = Effects { spiral: true, curvature: false, ..bent };
     let apart = |bend: f64| {
         let pairs: Vec<Pair> = conditions(bent, 100)
             .iter()
             .map(|condition| {
                 let shaped = |bend, spiral| InitialCondition {
-                    rod: kept(Rod {
-                        bend,
-                        slope: 0.0,
-                        spiral,
-                        ..condition.rod.clone()
-                    }),
+                    rod: kept(Rod { bend, slope: 0.0, spiral, ..condition.rod.clone() }),
                     ..*condition
                 };
                 (shaped(bend, None), shaped(0.0, Some([2.0 * bend, 0.0])))

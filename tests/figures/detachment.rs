@@ -38,10 +38,7 @@ fn detachment_curves_enclose_the_stable_region() {
                 "{name} {letter}: {top:?}"
             );
             // From the tip, a CB push leads nowhere, but where the thin end straightens first.
-            assert!(
-                (0.0..1.0).contains(&top.points[1][0]),
-                "{name} {letter}: {top:?}"
-            );
+            assert!((0.0..1.0).contains(&top.points[1][0]), "{name} {letter}: {top:?}");
         }
         let has_dashes = plot.lines.iter().any(|line| line.stroke == Stroke::Dashed);
         assert_eq!(has_dashes, whiskers == 2);
@@ -59,28 +56,15 @@ fn measured_ends_are_circles_over_the_theory() {
         kind: Some(kind),
         sd_deg: 1.0,
     };
-    let both = vec![
-        end(20.0, DetachmentKind::SlipOff),
-        end(-90.0, DetachmentKind::PullOff),
-    ];
-    let measured = Measurements {
-        fig4d: both.clone(),
-        fig5c_left: both,
-        fig5c_right: Vec::new(),
-    };
+    let both = vec![end(20.0, DetachmentKind::SlipOff), end(-90.0, DetachmentKind::PullOff)];
+    let measured = Measurements { fig4d: both.clone(), fig5c_left: both, fig5c_right: Vec::new() };
     let all = drawn(&measured);
     let dots = |name: &str, place: usize| {
         let figure = all.iter().find(|figure| figure.name == name).unwrap();
         let dots = figure.chart.plots[place].dots.iter();
-        dots.map(|dot| (dot.at, dot.ink, dot.open))
-            .collect::<Vec<_>>()
+        dots.map(|dot| (dot.at, dot.ink, dot.open)).collect::<Vec<_>>()
     };
-    let shown = |is_open| {
-        [
-            ([20.0, 9.0], Ink::Black, true),
-            ([-90.0, 9.0], Ink::Blue, is_open),
-        ]
-    };
+    let shown = |is_open| [([20.0, 9.0], Ink::Black, true), ([-90.0, 9.0], Ink::Blue, is_open)];
     assert_eq!(dots("fig4d", 0), shown(false));
     assert_eq!(dots("fig5c", 0), shown(true));
     assert_eq!(dots("fig5c", 1), []);

@@ -38,9 +38,7 @@ fn figure(name: &str) -> &'static DrawnFigure {
 /// Returns the plot of a figure with this letter.
 fn plot(name: &str, letter: &str) -> &'static Plot {
     let mut plots = figure(name).chart.plots.iter();
-    plots
-        .find(|plot| plot.letter.as_deref() == Some(letter))
-        .unwrap()
+    plots.find(|plot| plot.letter.as_deref() == Some(letter)).unwrap()
 }
 
 fn named<'a>(dots: &'a [Dot], name: &str) -> Vec<&'a Dot> {
@@ -68,17 +66,11 @@ fn last(line: &Line) -> [f64; 2] {
 #[test]
 fn every_panel_has_its_letter_and_a_table() {
     let letters = |figure: &DrawnFigure| -> String {
-        let letters = figure
-            .chart
-            .plots
-            .iter()
-            .map(|plot| plot.letter.clone().unwrap());
+        let letters = figure.chart.plots.iter().map(|plot| plot.letter.clone().unwrap());
         letters.collect()
     };
-    let shown: Vec<_> = FIGURES
-        .iter()
-        .map(|figure| (figure.name, letters(figure), figure.tables))
-        .collect();
+    let shown: Vec<_> =
+        FIGURES.iter().map(|figure| (figure.name, letters(figure), figure.tables)).collect();
     let expected = [
         ("fig1", "ABCD", 4),
         ("fig2", "ABCD", 4),
@@ -90,10 +82,7 @@ fn every_panel_has_its_letter_and_a_table() {
         ("fig6", "BCEF", 24),
         ("fig7b", "B", 1),
     ];
-    assert_eq!(
-        shown,
-        expected.map(|(name, letters, tables)| (name, letters.to_owned(), tables))
-    );
+    assert_eq!(shown, expected.map(|(name, letters, tables)| (name, letters.to_owned(), tables)));
 }
 
 /// Caption of Fig. 1D: the virtual contact is as far from the base as the real one.
@@ -108,17 +97,12 @@ fn fig1_is_drawn_of_what_it_defines() {
     assert!((real - other).abs() < 1e-9, "{real} {other}");
     assert_eq!(
         looks(&plot.lines[2..]),
-        [
-            (Ink::Grey, Stroke::Solid),
-            (Ink::Grey, Stroke::Dashed),
-            (Ink::Black, Stroke::Solid)
-        ]
+        [(Ink::Grey, Stroke::Solid), (Ink::Grey, Stroke::Dashed), (Ink::Black, Stroke::Solid)]
     );
     // Real and virtual pole touch their whiskers at their contacts; the real one is dark.
-    for (disc, at, dark) in [
-        (plot.discs[0], contact, true),
-        (plot.discs[1], virtual_contact, false),
-    ] {
+    for (disc, at, dark) in
+        [(plot.discs[0], contact, true), (plot.discs[1], virtual_contact, false)]
+    {
         assert!(
             near(disc.centre, at, 0.25 + 1e-9) && !near(disc.centre, at, 0.25 - 1e-9),
             "{disc:?} {at:?}"
@@ -144,23 +128,16 @@ fn fig2_shows_shapes_at_the_papers_pole() {
         assert!(plot.equal_axes && plot.inset.is_some(), "{letter}");
         assert_eq!(
             looks(&plot.lines),
-            strokes
-                .iter()
-                .map(|stroke| (Ink::Black, *stroke))
-                .collect::<Vec<_>>()
+            strokes.iter().map(|stroke| (Ink::Black, *stroke)).collect::<Vec<_>>()
         );
-        let [pole] = plot.discs[..] else {
-            panic!("{letter}")
-        };
+        let [pole] = plot.discs[..] else { panic!("{letter}") };
         // The paper gives two decimals, by which the distance of first touch and the direction do not quite agree.
         assert!(near(pole.centre, [15.13, 4.29], 0.01), "{letter}: {pole:?}");
         assert_eq!(pole.radius, 0.25);
         for line in &plot.lines {
             assert!(near(line.points[0], [0.0, 0.0], 1e-9), "{letter}");
-            let away = line
-                .points
-                .iter()
-                .map(|at| (at[0] - pole.centre[0]).hypot(at[1] - pole.centre[1]));
+            let away =
+                line.points.iter().map(|at| (at[0] - pole.centre[0]).hypot(at[1] - pole.centre[1]));
             let nearest = away.fold(f64::INFINITY, f64::min);
             assert!((nearest - 0.25).abs() < 1e-6, "{letter}: {nearest}");
         }

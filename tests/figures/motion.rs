@@ -43,13 +43,8 @@ fn fig5b_has_one_red_frame() {
 fn fig6_says_where_the_model_differs() {
     let fig6 = figure("fig6");
     let parts = |plot: usize, ink: Ink| {
-        let lines = fig6.chart.plots[plot]
-            .lines
-            .iter()
-            .filter(|line| line.ink == ink);
-        let points = lines
-            .flat_map(|line| &line.points)
-            .filter(|at| at[0].is_finite());
+        let lines = fig6.chart.plots[plot].lines.iter().filter(|line| line.ink == ink);
+        let points = lines.flat_map(|line| &line.points).filter(|at| at[0].is_finite());
         points.count()
     };
     let red = Ink::Series(1);
@@ -89,10 +84,7 @@ fn fig7b_scatters_around_the_true_force() {
         let rms = (misses.iter().map(|miss| miss * miss).sum::<f64>() / misses.len() as f64).sqrt();
         let mean = misses.iter().sum::<f64>() / misses.len() as f64;
         // Measured: root mean squares of 0.024 and 0.034 uN, means of -0.002 and -0.003 uN.
-        assert!(
-            misses.len() > 450 && rms < 0.05 && mean.abs() < 0.01,
-            "{rms} {mean}"
-        );
+        assert!(misses.len() > 450 && rms < 0.05 && mean.abs() < 0.01, "{rms} {mean}");
         assert!(rms > 0.01, "{rms}");
     }
 }

@@ -17,10 +17,7 @@ fn comes_back(start: &Scene, angle: MeasuredAngle, truth: &[(Parameter, f64)]) {
         // Measured: at most 2e-12.
         assert!(off.abs() < 1e-10, "{parameter:?} of {truth:?}: {off:e}");
         assert_eq!(estimate.value, parameter.value(&found.scene).unwrap());
-        assert!(
-            estimate.standard_error.is_some(),
-            "{parameter:?} of {truth:?}"
-        );
+        assert!(estimate.standard_error.is_some(), "{parameter:?} of {truth:?}");
     }
     assert!(found.comparison.rms_deg().unwrap() < 1e-8);
     assert_eq!(found.comparison.of_another_kind(), 0);
@@ -65,11 +62,7 @@ fn chord_angles_do_as_well() {
 fn from_far_away() {
     let truth = [(TipRadiusUm, 15.0), (ParabolaPerMm, 0.005)];
     comes_back(&cone(), MeasuredAngle::Push, &truth);
-    let truth = [
-        (TipRadiusUm, 0.1),
-        (ParabolaPerMm, 0.001),
-        (PoleRadiusMm, 1.5),
-    ];
+    let truth = [(TipRadiusUm, 0.1), (ParabolaPerMm, 0.001), (PoleRadiusMm, 1.5)];
     comes_back(&cone(), MeasuredAngle::Push, &truth);
 }
 

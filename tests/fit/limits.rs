@@ -9,10 +9,7 @@ use whiskmap::scene::Scene;
 
 /// Which parameters have a standard error.
 fn determined(fit: &Fit) -> Vec<Parameter> {
-    let known = fit
-        .estimates
-        .iter()
-        .filter(|estimate| estimate.standard_error.is_some());
+    let known = fit.estimates.iter().filter(|estimate| estimate.standard_error.is_some());
     known.map(|estimate| estimate.parameter).collect()
 }
 
@@ -21,10 +18,7 @@ fn no_detachment_depends_on_the_modulus() {
     let points = detachments(&cone(), MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(&cone(), &points, &[YoungsModulusGpa]).unwrap();
     assert_eq!(determined(&found), []);
-    assert_eq!(
-        (found.estimates[0].value, found.degrees_of_freedom),
-        (3.0, 24)
-    );
+    assert_eq!((found.estimates[0].value, found.degrees_of_freedom), (3.0, 24));
     let truth = cone().with_parameters(&[(TipRadiusUm, 2.0)]).unwrap();
     let points = detachments(&truth, MeasuredAngle::Push, &DISTANCES_MM);
     let found = fit(&cone(), &points, &[YoungsModulusGpa, TipRadiusUm]).unwrap();
@@ -38,12 +32,7 @@ fn no_detachment_depends_on_the_modulus() {
 fn what_counts_only_together_is_not_determined() {
     let truth = cone().with_parameters(&[(TipRadiusUm, 2.0), (ParabolaPerMm, 0.018)]);
     let points = detachments(&truth.unwrap(), MeasuredAngle::Push, &DISTANCES_MM);
-    let found = fit(
-        &cone(),
-        &points,
-        &[BaseRadiusUm, ParabolaPerMm, TipRadiusUm],
-    )
-    .unwrap();
+    let found = fit(&cone(), &points, &[BaseRadiusUm, ParabolaPerMm, TipRadiusUm]).unwrap();
     assert_eq!(determined(&found), [ParabolaPerMm]);
     assert_eq!(found.degrees_of_freedom, 22);
     let whisker = found.scene.first_whisker().whisker;
@@ -52,12 +41,7 @@ fn what_counts_only_together_is_not_determined() {
     assert!((found.estimates[1].value - 0.018).abs() < 1e-9);
 
     let slips = MeasuredPoints {
-        points: points
-            .points
-            .iter()
-            .copied()
-            .filter(|point| point.distance_mm < 16.5)
-            .collect(),
+        points: points.points.iter().copied().filter(|point| point.distance_mm < 16.5).collect(),
         ..points
     };
     let found = fit(&cone(), &slips, &[LengthMm, ParabolaPerMm, TipRadiusUm]).unwrap();
@@ -70,10 +54,7 @@ fn an_error_beyond_the_range_is_none() {
     let mut points = detachments(&rough, MeasuredAngle::Push, &DISTANCES_MM);
     points.have_deviations = true;
     for (sd_deg, known) in [(1.0, vec![Friction]), (1e3, vec![])] {
-        points
-            .points
-            .iter_mut()
-            .for_each(|point| point.sd_deg = sd_deg);
+        points.points.iter_mut().for_each(|point| point.sd_deg = sd_deg);
         let found = fit(&cone(), &points, &[Friction]).unwrap();
         assert_eq!(determined(&found), known);
     }
@@ -88,11 +69,7 @@ fn as_many_points_as_parameters_have_no_error_of_their_own() {
     points.have_deviations = true;
     assert_eq!(determined(&fit(&cone(), &points, &free).unwrap()), free);
     points.points.pop();
-    let few = FitError::TooFew {
-        origin: "points.csv".to_owned(),
-        free: 2,
-        used: 1,
-    };
+    let few = FitError::TooFew { origin: "points.csv".to_owned(), free: 2, used: 1 };
     assert_eq!(fit(&cone(), &points, &free), Err(few));
 }
 
@@ -112,10 +89,7 @@ fn parameters_stay_within_the_scene() {
         let start = cone().with_parameters(&[(Friction, from)]).unwrap();
         let found = fit(&start, &points, &[Friction, TipRadiusUm, ParabolaPerMm]).unwrap();
         let alone = fit(&cone(), &points, &[TipRadiusUm, ParabolaPerMm]).unwrap();
-        assert_eq!(
-            (found.estimates[0].value, found.estimates[0].is_at_limit),
-            (0.0, true)
-        );
+        assert_eq!((found.estimates[0].value, found.estimates[0].is_at_limit), (0.0, true));
         assert!((found.chi_square / alone.chi_square - 1.0).abs() < 1e-9);
         // A parameter at its limit is held, so that the others are as certain as without it.
         assert_eq!(found.estimates[0].standard_error, None);
@@ -124,10 +98,7 @@ fn parameters_stay_within_the_scene() {
             let errors = [one, other].map(|estimate| estimate.standard_error.unwrap());
             // Measured: 2e-6.
             assert!((errors[0] / errors[1] - 1.0).abs() < 1e-4, "{errors:?}");
-            assert!(
-                (one.value / other.value - 1.0).abs() < 1e-5,
-                "{one:?} {other:?}"
-            );
+            assert!((one.value / other.value - 1.0).abs() < 1e-5, "{one:?} {other:?}");
             assert!(!one.is_at_limit);
         }
     }
@@ -140,10 +111,7 @@ fn a_cylinder_becomes_a_cone_and_a_cone_a_cylinder() {
     for (start, truth, tip_um) in [(&cylinder, &cone(), 1.5), (&cone(), &cylinder, 30.0)] {
         let points = detachments(truth, MeasuredAngle::Push, &DISTANCES_MM);
         let found = fit(start, &points, &[TipRadiusUm]).unwrap();
-        assert!(
-            (found.estimates[0].value - tip_um).abs() < 1e-7,
-            "{found:?}"
-        );
+        assert!((found.estimates[0].value - tip_um).abs() < 1e-7, "{found:?}");
     }
 }
 
@@ -224,20 +192,11 @@ fn a_local_minimum_at_a_limit_is_left() {
     for start in [1.5, 2.0, 2.5] {
         let (scene, points) = measured(start, &pulls);
         let found = fit(&scene, &points, &[ParabolaPerMm, TipExtensionMm]).unwrap();
-        assert_eq!(
-            determined(&found),
-            [ParabolaPerMm, TipExtensionMm],
-            "{start}"
-        );
+        assert_eq!(determined(&found), [ParabolaPerMm, TipExtensionMm], "{start}");
         assert_eq!(found.comparison.of_another_kind(), 0, "{start}");
         values.push(found.estimates[1].value);
     }
-    assert!(
-        values
-            .iter()
-            .all(|value| (value / values[0] - 1.0).abs() < 1e-6),
-        "{values:?}"
-    );
+    assert!(values.iter().all(|value| (value / values[0] - 1.0).abs() < 1e-6), "{values:?}");
 }
 
 /// A fit takes differences where the push of a point ends at first touch, because such a point has no derivative.
@@ -248,13 +207,7 @@ fn a_point_at_first_touch_does_not_end_a_fit() {
     let truth = straight.with(TipRadiusUm, 2.0).unwrap();
     let mut points = detachments(&truth, MeasuredAngle::Push, &DISTANCES_MM);
     let at_reach = "side,distance_mm,push_angle_deg\ncb,20,0\n";
-    points
-        .points
-        .extend(MeasuredPoints::parse(at_reach, "reach").unwrap().points);
+    points.points.extend(MeasuredPoints::parse(at_reach, "reach").unwrap().points);
     let found = fit(&straight, &points, &[TipRadiusUm]).unwrap();
-    assert!(
-        (found.estimates[0].value - 2.0).abs() < 1e-6,
-        "{:?}",
-        found.estimates
-    );
+    assert!((found.estimates[0].value - 2.0).abs() < 1e-6, "{:?}", found.estimates);
 }

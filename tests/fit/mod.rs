@@ -24,9 +24,8 @@ fn cone() -> Scene {
 }
 
 /// Slip-offs on both sides, and on CB two pull-offs.
-const DISTANCES_MM: [f64; 12] = [
-    6.0, 7.5, 9.0, 10.0, 11.0, 12.5, 14.0, 15.0, 16.0, 17.5, 19.2, 19.5,
-];
+const DISTANCES_MM: [f64; 12] =
+    [6.0, 7.5, 9.0, 10.0, 11.0, 12.5, 14.0, 15.0, 16.0, 17.5, 19.2, 19.5];
 
 /// The detachments of a scene, without any error.
 fn detachments(scene: &Scene, angle: MeasuredAngle, distances_mm: &[f64]) -> MeasuredPoints {

@@ -9,41 +9,26 @@ use whiskmap::scene::Parameter::{ParabolaPerMm, PoleRadiusMm, TipRadiusUm};
 /// Number of 100 trials with every parameter within 3 standard errors, and the mean square of all errors over
 /// standard errors.
 fn trials(have_deviations: bool) -> (usize, f64) {
-    let truth = [
-        (TipRadiusUm, 2.5),
-        (ParabolaPerMm, 0.018),
-        (PoleRadiusMm, 0.4),
-    ];
+    let truth = [(TipRadiusUm, 2.5), (ParabolaPerMm, 0.018), (PoleRadiusMm, 0.4)];
     let start = cone();
-    let exact = detachments(
-        &start.with_parameters(&truth).unwrap(),
-        MeasuredAngle::Push,
-        &DISTANCES_MM,
-    );
+    let exact =
+        detachments(&start.with_parameters(&truth).unwrap(), MeasuredAngle::Push, &DISTANCES_MM);
     let (mut within, mut squares) = (0, 0.0);
     for seed in 0..100 {
         let mut random = RandomStream::of_state(seed);
         let mut points = exact.clone();
         points.have_deviations = have_deviations;
         for (i, point) in points.points.iter_mut().enumerate() {
-            let sd_deg = if have_deviations {
-                0.2 + 0.05 * i as f64
-            } else {
-                0.7
-            };
+            let sd_deg = if have_deviations { 0.2 + 0.05 * i as f64 } else { 0.7 };
             point.angle_deg += sd_deg * random.normal();
             if have_deviations {
                 point.sd_deg = sd_deg;
             }
         }
         let found = fit(&start, &points, &free(&truth)).unwrap();
-        let pulls = found
-            .estimates
-            .iter()
-            .zip(&truth)
-            .map(|(estimate, (_, value))| {
-                (estimate.value - value) / estimate.standard_error.unwrap()
-            });
+        let pulls = found.estimates.iter().zip(&truth).map(|(estimate, (_, value))| {
+            (estimate.value - value) / estimate.standard_error.unwrap()
+        });
         let pulls: Vec<f64> = pulls.collect();
         within += usize::from(pulls.iter().all(|pull| pull.abs() <= 3.0));
         squares += pulls.iter().map(|pull| pull * pull).sum::<f64>() / 300.0;

@@ -10,21 +10,14 @@ const GOOD: &str =
     "side,distance_mm,push_angle_deg,kind,sd_deg\ncb,15.5,16,slip-off,0.5\ncf,12,-41,,0.7\n";
 
 fn refused(text: &str) -> String {
-    MeasuredPoints::parse(text, "p.csv")
-        .unwrap_err()
-        .to_string()
+    MeasuredPoints::parse(text, "p.csv").unwrap_err().to_string()
 }
 
 #[test]
 fn columns_come_in_any_order() {
     let points = MeasuredPoints::parse(GOOD, "p.csv").unwrap();
-    assert_eq!(
-        (points.angle, points.have_deviations),
-        (MeasuredAngle::Push, true)
-    );
-    let [cb, cf] = points.points[..] else {
-        panic!()
-    };
+    assert_eq!((points.angle, points.have_deviations), (MeasuredAngle::Push, true));
+    let [cb, cf] = points.points[..] else { panic!() };
     assert_eq!(
         (cb.line, cb.side, cb.distance_mm, cb.angle_deg, cb.sd_deg),
         (2, Side::Cb, 15.5, 16.0, 0.5)
@@ -75,11 +68,9 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
     let rows = "p.csv: has no rows: must have a header and at least one row below it";
     assert_eq!(refused(""), rows);
     assert_eq!(refused("side,distance_mm,push_angle_deg\n"), rows);
-    for (old, new) in [
-        ("kind", "push_chord_deg"),
-        ("distance_mm", "distance"),
-        ("push_angle_deg", "angle"),
-    ] {
+    for (old, new) in
+        [("kind", "push_chord_deg"), ("distance_mm", "distance"), ("push_angle_deg", "angle")]
+    {
         let header = GOOD.lines().next().unwrap();
         let found = header.replacen(old, new, 1).replace(',', ", ");
         let said = format!("p.csv:1: found {found}; needed {columns}, each once");
@@ -95,36 +86,18 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
     let unit = "; `distance_cm` is not known; values must be in mm: convert them, and use the name `distance_mm`";
     assert!(with("distance_mm", "distance_cm").ends_with(unit));
     assert!(with("side", "\u{1b}[31mside").contains(r"found \u{1b}[31mside"));
-    assert_eq!(
-        with("cb,", "left,"),
-        "p.csv:2: side = left: must be cb or cf"
-    );
+    assert_eq!(with("cb,", "left,"), "p.csv:2: side = left: must be cb or cf");
     assert_eq!(
         with("slip-off", "slip"),
         "p.csv:2: kind = slip: must be slip-off, pull-off or empty"
     );
     for (number, name, must) in [
-        (
-            "15.5",
-            "distance_mm",
-            "a positive number, or empty where it is missing",
-        ),
-        (
-            "0.5\n",
-            "sd_deg",
-            "a number between 1e-6 and 360, or empty where it is missing",
-        ),
+        ("15.5", "distance_mm", "a positive number, or empty where it is missing"),
+        ("0.5\n", "sd_deg", "a number between 1e-6 and 360, or empty where it is missing"),
     ] {
         for bad in ["far", "0", "-1", "inf", "1e999"] {
-            let new = if number.ends_with('\n') {
-                format!("{bad}\n")
-            } else {
-                bad.to_owned()
-            };
-            assert_eq!(
-                with(number, &new),
-                format!("p.csv:2: {name} = {bad}: must be {must}")
-            );
+            let new = if number.ends_with('\n') { format!("{bad}\n") } else { bad.to_owned() };
+            assert_eq!(with(number, &new), format!("p.csv:2: {name} = {bad}: must be {must}"));
         }
     }
     for bad in ["far", "361", "-inf"] {
@@ -135,23 +108,14 @@ fn errors_name_the_line_the_value_and_what_is_allowed() {
             )
         );
     }
-    assert_eq!(
-        with("cf,12", "12"),
-        "p.csv:3: has 4 cells: must have 5, one a column"
-    );
-    assert_eq!(
-        with("cf,12", "cf,12,far"),
-        "p.csv:3: has 6 cells: must have 5, one a column"
-    );
+    assert_eq!(with("cf,12", "12"), "p.csv:3: has 4 cells: must have 5, one a column");
+    assert_eq!(with("cf,12", "cf,12,far"), "p.csv:3: has 6 cells: must have 5, one a column");
     let commas = "; where numbers have decimal commas, separate columns by `;`";
     assert_eq!(
         with("cb,15.5", "cb,15,66"),
         format!("p.csv:2: has 6 cells: must have 5, one a column{commas}")
     );
-    assert_eq!(
-        with("cf,12,-41,,0.7", "cf"),
-        "p.csv:3: has 1 cell: must have 5, one a column"
-    );
+    assert_eq!(with("cf,12,-41,,0.7", "cf"), "p.csv:3: has 1 cell: must have 5, one a column");
     assert!(
         with("0.5\n", "1e-7\n")
             .ends_with("must be a number between 1e-6 and 360, or empty where it is missing")
@@ -261,56 +225,24 @@ fn points_are_compared_one_by_one() {
     let whisker = scene.first_whisker().whisker;
     points.check_reach(&whisker, &scene.pole).unwrap();
     let beside = points.beside(&whisker, &scene.pole);
-    let [far, first, cf, again] = beside.rows[..] else {
-        panic!()
-    };
-    assert_eq!(
-        (far.line, far.predicted_kind),
-        (2, Some(DetachmentKind::PullOff))
-    );
+    let [far, first, cf, again] = beside.rows[..] else { panic!() };
+    assert_eq!((far.line, far.predicted_kind), (2, Some(DetachmentKind::PullOff)));
     assert_eq!((cf.side, cf.kind), (Side::Cf, None));
     let slip = first.predicted_deg.unwrap();
-    assert!(
-        (slip - 15.6094).abs() < 1e-3 && again.predicted_deg == Some(slip),
-        "{slip}"
-    );
-    assert_eq!(
-        (first.residual_deg, again.residual_deg),
-        (Some(15.0 - slip), Some(17.0 - slip))
-    );
-    assert_eq!(
-        (
-            beside.count(),
-            beside.of_another_kind(),
-            beside.left_out().count()
-        ),
-        (4, 2, 0)
-    );
-    let residuals: Vec<f64> = beside
-        .rows
-        .iter()
-        .map(|row| row.residual_deg.unwrap())
-        .collect();
+    assert!((slip - 15.6094).abs() < 1e-3 && again.predicted_deg == Some(slip), "{slip}");
+    assert_eq!((first.residual_deg, again.residual_deg), (Some(15.0 - slip), Some(17.0 - slip)));
+    assert_eq!((beside.count(), beside.of_another_kind(), beside.left_out().count()), (4, 2, 0));
+    let residuals: Vec<f64> = beside.rows.iter().map(|row| row.residual_deg.unwrap()).collect();
     let mean = residuals.iter().sum::<f64>() / 4.0;
-    let square = residuals
-        .iter()
-        .map(|residual| residual * residual)
-        .sum::<f64>()
-        / 4.0;
+    let square = residuals.iter().map(|residual| residual * residual).sum::<f64>() / 4.0;
     assert!((beside.bias_deg().unwrap() - mean).abs() < 1e-12);
     assert!((beside.rms_deg().unwrap() - square.sqrt()).abs() < 1e-12);
 
-    for (distance, allowed) in [
-        ("19.9", false),
-        ("0.25", false),
-        ("0.26", true),
-        ("0.01", false),
-        ("1e160", false),
-    ] {
+    for (distance, allowed) in
+        [("19.9", false), ("0.25", false), ("0.26", true), ("0.01", false), ("1e160", false)]
+    {
         let points = MeasuredPoints::parse(&text.replace("19.5", distance), "p.csv").unwrap();
-        let checked = points
-            .check_reach(&whisker, &scene.pole)
-            .map_err(|why| why.to_string());
+        let checked = points.check_reach(&whisker, &scene.pole).map_err(|why| why.to_string());
         assert_eq!(checked.is_ok(), allowed, "{distance}");
         if let Err(said) = checked {
             let start = format!(

@@ -44,12 +44,7 @@ fn outliers_are_named_and_hardly_pull() {
         points.points[row].angle_deg += 12.0;
     }
     let squares = fitted(&points, FitLoss::Squares);
-    assert!(
-        squares
-            .warnings(&points)
-            .iter()
-            .all(|point| !point.contains("outlier"))
-    );
+    assert!(squares.warnings(&points).iter().all(|point| !point.contains("outlier")));
     for loss in [FitLoss::SoftL1, FitLoss::Huber] {
         let found = fitted(&points, loss);
         assert!(
@@ -58,20 +53,12 @@ fn outliers_are_named_and_hardly_pull() {
             errors(&found)
         );
         let off = |fit: &Fit| (fit.estimates[0].value - TRUTH[0].1).abs();
-        assert!(
-            off(&found) < 0.2 * off(&squares),
-            "{loss:?}: {} {}",
-            off(&found),
-            off(&squares)
-        );
+        assert!(off(&found) < 0.2 * off(&squares), "{loss:?}: {} {}", off(&found), off(&squares));
         let warnings = found.warnings(&points);
         assert_eq!(warnings.len(), 3, "{warnings:?}");
         for (row, warning) in rows.iter().zip(&warnings) {
             let said = format!("points.csv:{}: outlier: residual ", row + 2);
-            assert!(
-                warning.starts_with(&said) && warning.contains("weight 0.0"),
-                "{warning}"
-            );
+            assert!(warning.starts_with(&said) && warning.contains("weight 0.0"), "{warning}");
         }
         // Without standard deviations, the median of the residuals is the scale of outliers.
         let mut bare = points.clone();
@@ -88,20 +75,11 @@ fn standard_errors_of_robust_fits_are_as_large_as_their_errors() {
         let mut squares = 0.0;
         for seed in 0..100 {
             let mut points = noisy(0.3, seed);
-            for (i, point) in points
-                .points
-                .iter_mut()
-                .enumerate()
-                .filter(|(i, _)| i % 10 == 4)
-            {
+            for (i, point) in points.points.iter_mut().enumerate().filter(|(i, _)| i % 10 == 4) {
                 point.angle_deg += if i == 14 { -3.0 } else { 3.0 };
             }
             let found = fitted(&points, loss);
-            squares += errors(&found)
-                .iter()
-                .map(|error| error * error)
-                .sum::<f64>()
-                / 200.0;
+            squares += errors(&found).iter().map(|error| error * error).sum::<f64>() / 200.0;
         }
         // 1 if they are right; of so many numbers, 0.7 and 1.3 are three deviations off.
         assert!((0.7..1.3).contains(&squares), "{loss:?}: {squares}");
@@ -116,32 +94,22 @@ fn a_pull_is_the_change_without_the_row() {
         let whole = fitted(&points, loss);
         assert_eq!(whole.pulls.len(), points.points.len());
         assert!(
-            whole
-                .pulls
-                .is_sorted_by(|a, b| a.standard_errors.abs() >= b.standard_errors.abs())
+            whole.pulls.is_sorted_by(|a, b| a.standard_errors.abs() >= b.standard_errors.abs())
         );
         let strongest = whole.pulls[0];
         let mut without = points.clone();
         without.points.retain(|point| point.line != strongest.line);
         let other = fitted(&without, loss);
-        let place = whole
-            .estimates
-            .iter()
-            .position(|estimate| estimate.parameter == strongest.parameter);
+        let place =
+            whole.estimates.iter().position(|estimate| estimate.parameter == strongest.parameter);
         let place = place.unwrap();
         let [before, after] = [&whole, &other].map(|fit| fit.estimates[place].value);
         let moved = (after - before) / whole.estimates[place].standard_error.unwrap();
         let ratio = strongest.standard_errors / moved;
         // Measured: 1.00 for squares. Of the losses, the mean curvature takes the place of each point's own.
         let most = if loss == FitLoss::Squares { 0.02 } else { 0.5 };
-        assert!(
-            (ratio - 1.0).abs() < most,
-            "{loss:?}: {strongest:?} {moved}"
-        );
+        assert!((ratio - 1.0).abs() < most, "{loss:?}: {strongest:?} {moved}");
     }
     let exact = detachments(&cone(), MeasuredAngle::Push, &DISTANCES_MM);
-    assert_eq!(
-        fit(&cone(), &exact, &free(&TRUTH)).unwrap().loss,
-        FitLoss::Squares
-    );
+    assert_eq!(fit(&cone(), &exact, &free(&TRUTH)).unwrap().loss, FitLoss::Squares);
 }

@@ -43,10 +43,7 @@ fn points_that_no_start_reaches_are_refused() {
         other => panic!("{other:?}"),
     };
     let why = refused(&points, &[TipRadiusUm, YoungsModulusGpa]);
-    assert!(
-        why.starts_with("points.csv:11: distance_mm = 17.5: must be between 0.017"),
-        "{why}"
-    );
+    assert!(why.starts_with("points.csv:11: distance_mm = 17.5: must be between 0.017"), "{why}");
     points.points[11].distance_mm = 50.0;
     let why = refused(&points, &[LengthMm]);
     assert!(why.contains("distance_mm = "), "{why}");

@@ -23,17 +23,13 @@ fn wrong_units_are_not_a_fit() {
         point.sd_deg = 0.01;
     });
     let centimetres = changed(false, |point| point.distance_mm /= 10.0);
-    for (found, cause, has_chi_square) in [
-        (radians, LikelyCause::Radians, true),
-        (centimetres, LikelyCause::Centimetres, false),
-    ] {
+    for (found, cause, has_chi_square) in
+        [(radians, LikelyCause::Radians, true), (centimetres, LikelyCause::Centimetres, false)]
+    {
         let why = found.not_a_fit.as_ref().unwrap();
         assert_eq!(why.cause, Some(cause), "{why}");
         assert_eq!(why.reduced_chi_square.is_some(), has_chi_square);
-        let mut errors = found
-            .estimates
-            .iter()
-            .map(|estimate| estimate.standard_error);
+        let mut errors = found.estimates.iter().map(|estimate| estimate.standard_error);
         assert!(errors.all(|error| error.is_none()));
         assert_eq!(found.correlation, [[None; 2]; 2]);
     }
@@ -67,10 +63,9 @@ fn noisy_points_stay_a_fit() {
 /// The scene's kind of whisker explains the angles, but not the deviations.
 #[test]
 fn absurd_deviations_are_not_a_fit() {
-    for (sd_deg, cause) in [
-        (3.0_f64.to_radians(), Some(LikelyCause::RadianDeviations)),
-        (0.001, None),
-    ] {
+    for (sd_deg, cause) in
+        [(3.0_f64.to_radians(), Some(LikelyCause::RadianDeviations)), (0.001, None)]
+    {
         let random = std::cell::RefCell::new(RandomStream::of_state(7));
         let found = changed(true, |point| {
             point.angle_deg += 3.0 * random.borrow_mut().normal();

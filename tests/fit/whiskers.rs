@@ -7,11 +7,8 @@ use whiskmap::scene::{Parameter::*, Scene, WhiskerRow};
 use whiskmap::trace::curve;
 
 /// Length, base and tip radius of each whisker of the table.
-const WHISKERS: [(&str, [f64; 3]); 3] = [
-    ("C1", [25.0, 40.0, 2.0]),
-    ("C2", [18.0, 33.0, 1.5]),
-    ("C3", [12.0, 26.0, 1.0]),
-];
+const WHISKERS: [(&str, [f64; 3]); 3] =
+    [("C1", [25.0, 40.0, 2.0]), ("C2", [18.0, 33.0, 1.5]), ("C3", [12.0, 26.0, 1.0])];
 
 /// A table of [`WHISKERS`] and of one without a radius, in follicles of the same stiffness.
 fn table() -> Scene {
@@ -48,23 +45,14 @@ fn points(scene: &Scene) -> MeasuredPoints {
 
 #[test]
 fn whiskers_of_a_table_share_the_fitted_values() {
-    let truth = [
-        (FollicleStiffness, 3000.0),
-        (Friction, 0.1),
-        (PoleRadiusMm, 0.25),
-    ];
+    let truth = [(FollicleStiffness, 3000.0), (Friction, 0.1), (PoleRadiusMm, 0.25)];
     let points = points(&table());
     let start = table().with_parameters(&[
         (FollicleStiffness, 10_000.0),
         (Friction, 0.3),
         (PoleRadiusMm, 0.4),
     ]);
-    let found = fit(
-        &start.unwrap(),
-        &points,
-        &truth.map(|(parameter, _)| parameter),
-    )
-    .unwrap();
+    let found = fit(&start.unwrap(), &points, &truth.map(|(parameter, _)| parameter)).unwrap();
     for (estimate, (parameter, value)) in found.estimates.iter().zip(truth) {
         let off = (estimate.value / value - 1.0).abs();
         assert!(off < 1e-9, "{parameter:?}: {off:e}");
@@ -117,30 +105,15 @@ fn points_of_other_whiskers_are_refused() {
             FollicleStiffness,
             "p.csv:3: whisker = C4: its row has no whisker: base_radius_um is missing",
         ),
-        (
-            &table,
-            "C3,cb,13,20",
-            FollicleStiffness,
-            "p.csv:3: distance_mm = 13: must be between",
-        ),
+        (&table, "C3,cb,13,20", FollicleStiffness, "p.csv:3: distance_mm = 13: must be between"),
         (
             &single,
             "C1,cb,9,20",
             FollicleStiffness,
             "p.csv: has a column whisker: the scene must have a table of whiskers",
         ),
-        (
-            &table,
-            "C2,cb,8,20",
-            LengthMm,
-            "length_mm: whiskers.table has the column length_mm",
-        ),
-        (
-            &table,
-            "C2,cb,8,20",
-            Taper,
-            "taper: whiskers.table has the column tip_radius_um",
-        ),
+        (&table, "C2,cb,8,20", LengthMm, "length_mm: whiskers.table has the column length_mm"),
+        (&table, "C2,cb,8,20", Taper, "taper: whiskers.table has the column tip_radius_um"),
     ] {
         let why = refused(scene, row, free).to_string();
         assert!(why.starts_with(said), "{row}: {why}");

@@ -40,10 +40,7 @@ fn a_tolerance_leaves_no_contact_without_a_state() {
             Ok::<(), Error>(())
         })
         .unwrap();
-        assert!(
-            contacts > 20 && without == 0,
-            "{tolerance_deg:?}: {without} of {contacts}"
-        );
+        assert!(contacts > 20 && without == 0, "{tolerance_deg:?}: {without} of {contacts}");
     }
 }
 
@@ -123,11 +120,7 @@ fn cells_that_slide_toward_the_base_are_marked() {
             let state = branch.state(push.to_radians(), true).unwrap();
             let sliding = branch.shape(&state, 2).state.sliding;
             assert_eq!(sliding == Some(Sliding::Base), slides, "{distance} {push}");
-            assert_eq!(
-                sliding == Some(Sliding::Sticks),
-                sticks,
-                "{distance} {push}"
-            );
+            assert_eq!(sliding == Some(Sliding::Sticks), sticks, "{distance} {push}");
             contacts[side as usize] += 1;
             toward_base[side as usize] += usize::from(slides);
             sticking[side as usize] += usize::from(sticks);
@@ -149,26 +142,15 @@ fn cells_that_slide_toward_the_base_are_marked() {
 #[test]
 fn a_status_does_not_depend_on_other_push_angles() {
     let dense = cone(0.02, 0.25, 0.3);
-    let few: Vec<f64> = dense
-        .grid
-        .push_angle_deg
-        .iter()
-        .copied()
-        .step_by(7)
-        .collect();
+    let few: Vec<f64> = dense.grid.push_angle_deg.iter().copied().step_by(7).collect();
     let sparse = dense.to_builder().push_angle_deg(few).build().unwrap();
     let [dense, sparse] = [&dense, &sparse].map(|scene| {
         let (_, panels) = compute(scene, None);
         (scene.grid.push_angle_deg.len(), panels[0].status.clone())
     });
-    let of_dense = dense
-        .1
-        .chunks(dense.0)
-        .flat_map(|row| row.iter().step_by(7));
+    let of_dense = dense.1.chunks(dense.0).flat_map(|row| row.iter().step_by(7));
     let of_dense: Vec<u32> = of_dense.copied().collect();
-    let sticking = of_dense
-        .iter()
-        .filter(|code| **code == Status::Sticking.code());
+    let sticking = of_dense.iter().filter(|code| **code == Status::Sticking.code());
     assert!(sticking.count() > 2);
     assert_eq!(of_dense, sparse.1);
 }

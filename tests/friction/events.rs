@@ -155,14 +155,7 @@ fn events_do_not_depend_on_samples() {
             *kinds.entry(format!("{:?}", event.event)).or_default() += 1;
         }
     }
-    for kind in [
-        "Touch",
-        "Release",
-        "SlipOff",
-        "PullOff",
-        "Snap",
-        "Undecided",
-    ] {
+    for kind in ["Touch", "Release", "SlipOff", "PullOff", "Snap", "Undecided"] {
         assert!(kinds.contains_key(kind), "{kinds:?}");
     }
 }
@@ -172,29 +165,12 @@ fn events_do_not_depend_on_samples() {
 #[test]
 fn a_contact_that_slides_back_is_released() {
     for (scene, distance_mm, turns) in [
-        (
-            scene(0.0353, 0.038, 0.13, 0.98),
-            16.69,
-            vec![-0.5, 41.07, 19.7, 37.6, -0.5],
-        ),
-        (
-            scene(0.0425, 0.0275, 0.0004, 0.317),
-            12.417,
-            vec![-0.5, 69.6, 57.8, 69.6, -0.5],
-        ),
+        (scene(0.0353, 0.038, 0.13, 0.98), 16.69, vec![-0.5, 41.07, 19.7, 37.6, -0.5]),
+        (scene(0.0425, 0.0275, 0.0004, 0.317), 12.417, vec![-0.5, 69.6, 57.8, 69.6, -0.5]),
     ] {
-        let course = RoughCourse {
-            whisker: scene.whisker.clone(),
-            pole: scene.pole,
-            distance_mm,
-            turns,
-        };
-        let kinds: Vec<_> = course
-            .check()
-            .events
-            .iter()
-            .map(|event| event.event)
-            .collect();
+        let course =
+            RoughCourse { whisker: scene.whisker.clone(), pole: scene.pole, distance_mm, turns };
+        let kinds: Vec<_> = course.check().events.iter().map(|event| event.event).collect();
         assert_eq!(kinds, [WhiskEventKind::Touch, WhiskEventKind::Release]);
         let found = course.sampled(4000).unwrap();
         let pairs = found.samples.windows(2);

@@ -55,12 +55,7 @@ fn the_whole_force_is_the_normal_one_with_friction() {
         let most = f64::sqrt(1.0 + friction * friction);
         for side in Side::BOTH {
             let points = Branch::new(&scene.whisker, &scene.pole, side, 15.66).unwrap();
-            for point in points
-                .points(40)
-                .unwrap()
-                .iter()
-                .filter(|point| point.force_un > 0.0)
-            {
+            for point in points.points(40).unwrap().iter().filter(|point| point.force_un > 0.0) {
                 let ratio = point.contact_force_un / point.force_un;
                 match point.sliding {
                     Some(Sliding::Sticks) => assert!((1.0..most).contains(&ratio), "{point:?}"),

@@ -18,11 +18,7 @@ struct RandomRow {
 
 /// Random whisker with friction up to 1, on a random side.
 fn rough(random: &mut Random) -> (Rod, Side) {
-    let effects = Effects {
-        gradient: random.unit() < 0.3,
-        spiral: random.unit() < 0.2,
-        ..USUAL
-    };
+    let effects = Effects { gradient: random.unit() < 0.3, spiral: random.unit() < 0.2, ..USUAL };
     let rod = rod(effects, random);
     let side = if rod.pole >= 0.0 { Side::Cb } else { Side::Cf };
     let rod = Rod {
@@ -44,10 +40,7 @@ fn rows(count: usize, seed: u64) -> Vec<RandomRow> {
             continue;
         };
         if sheet.touches(0) && end.is_sound() && (1e-3..3.0).contains(&end.push) {
-            rows.push(RandomRow {
-                level: sheet.level(0),
-                end: end.push,
-            });
+            rows.push(RandomRow { level: sheet.level(0), end: end.push });
         }
     }
     rows
@@ -55,12 +48,7 @@ fn rows(count: usize, seed: u64) -> Vec<RandomRow> {
 
 fn at(history: &ContactHistory, push: f64) -> Option<FrictionState> {
     let phase = history.phase(push);
-    states(&[ContactQuery {
-        history,
-        push,
-        phase,
-    }])
-    .pop()?
+    states(&[ContactQuery { history, push, phase }]).pop()?
 }
 
 /// Every state is found, with a force ratio that its phase allows. Forces are continuous where the phase changes. Every push detaches with a
@@ -144,9 +132,7 @@ fn at_ends(rod: &Rod, side: Side, distances: &[f64]) -> Vec<(Option<Sliding>, bo
         let history = history.as_ref()?;
         history.sliding_at_end(end.push)
     });
-    by_history
-        .zip(surely_slides_to_end(&sheet, &rows))
-        .collect()
+    by_history.zip(surely_slides_to_end(&sheet, &rows)).collect()
 }
 
 /// A few states of a row show that most contacts slide toward the tip at the end of the push. They never show it of one that does not. In a
@@ -175,9 +161,7 @@ fn contacts_that_surely_slide_to_the_end_do() {
     };
     let distances: Vec<f64> = (880..995).map(|i| 1e-3 * f64::from(i)).collect();
     let found = at_ends(&cone, Side::Cf, &distances);
-    let sticking = found
-        .iter()
-        .filter(|(way, _)| *way == Some(Sliding::Sticks));
+    let sticking = found.iter().filter(|(way, _)| *way == Some(Sliding::Sticks));
     assert!(sticking.clone().count() > 2, "{found:?}");
     assert!(sticking.clone().all(|(_, is_sure)| !is_sure));
 }

@@ -17,10 +17,7 @@ fn random_scene(random: &mut Random) -> (Scene, f64) {
     let a_per_mm = 0.04 * random.unit();
     let radius_mm = random.unit() * random.unit();
     let friction = 0.02 + 0.9 * random.unit() * random.unit();
-    (
-        cone(a_per_mm, radius_mm, friction),
-        4.0 + 14.0 * random.unit(),
-    )
+    (cone(a_per_mm, radius_mm, friction), 4.0 + 14.0 * random.unit())
 }
 
 /// The course through `turns`, in degrees, with `parts` samples on each way.
@@ -62,9 +59,7 @@ fn turns([cb, cf, touch]: [f64; 3], is_cb: bool, random: &mut Random) -> Vec<f64
         part.min(0.9999) * if is_cb { cb } else { cf }
     });
     let from = if is_cb { 0.0 } else { touch };
-    lead.into_iter()
-        .chain(turns.map(|push| from + push))
-        .collect()
+    lead.into_iter().chain(turns.map(|push| from + push)).collect()
 }
 
 /// A straight way has the same states and the same dissipated energy at its end with one sample as with six.
@@ -80,10 +75,7 @@ fn a_course_does_not_depend_on_its_samples() {
         let turns = turns(reach, seed % 2 == 0, random);
         let [coarse, fine] = [1, 6].map(|parts| course(&scene, distance, &turns, parts).unwrap());
         for (sample, other) in coarse.samples.iter().zip(fine.samples.iter().step_by(6)) {
-            assert_eq!(
-                (sample.sliding, sample.reason),
-                (other.sliding, other.reason)
-            );
+            assert_eq!((sample.sliding, sample.reason), (other.sliding, other.reason));
             let pairs = [
                 (sample.force_un, other.force_un),
                 (sample.base_moment_nnm, other.base_moment_nnm),
@@ -123,9 +115,7 @@ fn a_first_push_has_the_states_of_the_course() {
         let Some(mut low) = pushes.clone().find(|push| slides(*push)) else {
             continue;
         };
-        let Some(mut high) = pushes
-            .skip_while(|push| *push < low)
-            .find(|push| !slides(*push))
+        let Some(mut high) = pushes.skip_while(|push| *push < low).find(|push| !slides(*push))
         else {
             continue;
         };
@@ -140,11 +130,7 @@ fn a_first_push_has_the_states_of_the_course() {
             }
             let mut course = limits.begin();
             course.to(push);
-            let first_push = ContactQuery {
-                history,
-                push,
-                phase: history.phase(push),
-            };
+            let first_push = ContactQuery { history, push, phase: history.phase(push) };
             let found = states(&[first_push, limits.query(course.phase, push)]);
             let [by_history, by_course] =
                 [0, 1].map(|i| found[i].map(|state| state.variation.full.force));

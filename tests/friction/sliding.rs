@@ -42,10 +42,7 @@ fn friction_takes_energy_where_the_contact_slides() {
                         let state = branch.state(push + side.sign() * step, true);
                         state.unwrap().sliding
                     });
-                    if neighbours
-                        .iter()
-                        .any(|neighbour| *neighbour != point.sliding)
-                    {
+                    if neighbours.iter().any(|neighbour| *neighbour != point.sliding) {
                         continue;
                     }
                     let sliding = point.sliding.unwrap();
@@ -58,19 +55,12 @@ fn friction_takes_energy_where_the_contact_slides() {
                         _ => assert!(is_none || taken > 0.0, "{case}"),
                     }
                     counts[sliding as usize] += 1;
-                    assert_eq!(
-                        branch.shape(&state, 2).state.sliding,
-                        Some(sliding),
-                        "{case}"
-                    );
+                    assert_eq!(branch.shape(&state, 2).state.sliding, Some(sliding), "{case}");
                 }
             }
         }
     }
-    assert!(
-        counts[0] > 800 && counts[1] > 60 && counts[2] > 10,
-        "{counts:?}"
-    );
+    assert!(counts[0] > 800 && counts[1] > 60 && counts[2] > 10, "{counts:?}");
 }
 
 /// The force on the whisker has the tangential component of its sliding direction: all of the friction, toward where the contact slides.
@@ -91,18 +81,12 @@ fn sliding_is_the_direction_of_the_friction() {
                 let [x, y] = [point.base_force_x_un, point.base_force_y_un];
                 let [along, across] = [cos * x + sin * y, (cos * y - sin * x).abs()];
                 let off = along - sign * 0.3 * across;
-                assert!(
-                    off.abs() <= 1e-8 * across,
-                    "{side:?} {distance}: {off:e} {point:?}"
-                );
+                assert!(off.abs() <= 1e-8 * across, "{side:?} {distance}: {off:e} {point:?}");
                 counts[usize::from(point.stable)][usize::from(sign < 0.0)] += 1;
             }
         }
     }
-    assert!(
-        counts[0][0] > 100 && counts[1].iter().all(|count| *count > 10),
-        "{counts:?}"
-    );
+    assert!(counts[0][0] > 100 && counts[1].iter().all(|count| *count > 10), "{counts:?}");
 }
 
 /// The slid distance is the arclength of the contact minus the distance rolled around the pole, along the stable states of a branch.
@@ -159,10 +143,7 @@ impl Frictions {
     /// Slid distance at each of `pushes` (magnitudes, in radians) with the coefficient `friction`, positive for sliding toward the tip.
     fn places(&self, friction: f64, pushes: &[f64]) -> Vec<Option<f64>> {
         let friction = friction * self.side.sign();
-        let rod = Rod {
-            friction,
-            ..self.rod.clone()
-        };
+        let rod = Rod { friction, ..self.rod.clone() };
         let level = LevelCurve::new(Method::fine(), &rod, self.side, &self.row);
         let continuation = level.continuation(level.touch(), Stretch::Stable).unwrap();
         let state = |push: &f64| level.state_at_push(&continuation.nodes, self.side.sign() * push);
@@ -176,34 +157,23 @@ impl Frictions {
 #[test]
 fn where_the_contact_sticks_less_friction_holds_it() {
     let mut counts = [0; 3];
-    for (a_per_mm, radius_mm, friction) in [
-        (0.02, 0.0, 0.3),
-        (0.02, 0.25, 0.05),
-        (0.02, 0.25, 0.9),
-        (0.04, 1.0, 0.3),
-    ] {
+    for (a_per_mm, radius_mm, friction) in
+        [(0.02, 0.0, 0.3), (0.02, 0.25, 0.05), (0.02, 0.25, 0.9), (0.04, 1.0, 0.3)]
+    {
         let scene = cone(a_per_mm, radius_mm, friction);
         for distance in [1.5, 4.0, 9.0, 15.0, 18.0] {
             let branch = Branch::new(&scene.whisker, &scene.pole, Side::Cf, distance).unwrap();
             let points = branch.points(120).unwrap();
             let inside = points.iter().filter(|p| p.stable && p.mark.is_none());
-            let (pushes, slidings): (Vec<f64>, Vec<Sliding>) = inside
-                .map(|p| (p.push_angle_deg.to_radians().abs(), p.sliding.unwrap()))
-                .unzip();
+            let (pushes, slidings): (Vec<f64>, Vec<Sliding>) =
+                inside.map(|p| (p.push_angle_deg.to_radians().abs(), p.sliding.unwrap())).unzip();
             let frictions = Frictions::new(&scene, Side::Cf, distance);
             // The reversal lies between two of the points, and is flat.
             let last = pushes[pushes.len() - 1];
             let fine: Vec<f64> = (0..2000).map(|i| last * f64::from(i) / 2000.0).collect();
             let base_limit = frictions.places(-friction, &fine);
-            let reversal = base_limit
-                .iter()
-                .flatten()
-                .copied()
-                .fold(f64::INFINITY, f64::min);
-            let reversal_at = base_limit
-                .iter()
-                .position(|place| *place == Some(reversal))
-                .unwrap();
+            let reversal = base_limit.iter().flatten().copied().fold(f64::INFINITY, f64::min);
+            let reversal_at = base_limit.iter().position(|place| *place == Some(reversal)).unwrap();
             for (push, sliding) in pushes.iter().zip(slidings) {
                 let case = format!("{a_per_mm} {radius_mm} {distance}: {push} {sliding:?}");
                 let beyond = |friction| frictions.places(friction, &[*push])[0].unwrap() - reversal;
@@ -217,11 +187,7 @@ fn where_the_contact_sticks_less_friction_holds_it() {
                         assert!(beyond(low) > -1e-7 && beyond(high) < 0.0, "{case}");
                         for _ in 0..12 {
                             let middle = 0.5 * (low + high);
-                            *(if beyond(middle) < 0.0 {
-                                &mut high
-                            } else {
-                                &mut low
-                            }) = middle;
+                            *(if beyond(middle) < 0.0 { &mut high } else { &mut low }) = middle;
                         }
                         assert!(beyond(low).abs() < 1e-4, "{case}: {low} {}", beyond(low));
                     }

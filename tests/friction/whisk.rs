@@ -48,11 +48,7 @@ fn the_work_of_the_base_is_dissipated() {
     const COUNT: u32 = 20_000;
     let mut snaps = 0;
     for (distance, [a_per_mm, radius_mm, friction], turns) in [
-        (
-            DISTANCE,
-            [0.02, 0.25, 0.3],
-            &[-0.5, 12.0, 4.0, 14.0, -0.5][..],
-        ),
+        (DISTANCE, [0.02, 0.25, 0.3], &[-0.5, 12.0, 4.0, 14.0, -0.5][..]),
         (DISTANCE, [0.02, 0.0, 0.9], &[-0.5, 9.0, -0.5]),
         (DISTANCE, [0.02, 0.25, 0.3], &[3.0, -20.0, -8.0, -24.0, 3.0]),
         (DISTANCE, [0.04, 1.0, 0.1], &[-0.5, 8.0, -0.5]),
@@ -65,16 +61,11 @@ fn the_work_of_the_base_is_dissipated() {
         let mut angles = to_and_fro(turns, COUNT);
         let snap = |found: &Whisk| {
             let mut snaps = found.events.iter();
-            snaps
-                .find(|event| event.event == WhiskEventKind::Snap)
-                .copied()
+            snaps.find(|event| event.event == WhiskEventKind::Snap).copied()
         };
         // The moment jumps at a snap: it gets a sample just before and just after it.
         if let Some(snap) = snap(&through(&scene, &angles)) {
-            let after = angles
-                .iter()
-                .enumerate()
-                .position(|(i, _)| i as f64 > snap.time_s);
+            let after = angles.iter().enumerate().position(|(i, _)| i as f64 > snap.time_s);
             let after = after.unwrap();
             let step = 1e-7_f64.copysign(angles[after] - angles[after - 1]);
             let beside = [-step, step].map(|step| snap.angle_deg + step);
@@ -112,10 +103,7 @@ fn a_cycle_is_closed() {
         let [first, last] = [0, cycle.len() - 1].map(|i| cycle[i].dissipated_nj.unwrap());
         last - first
     });
-    assert!(
-        (taken[0] / taken[1] - 1.0).abs() < 1e-9 && taken[0] > 0.0,
-        "{taken:?}"
-    );
+    assert!((taken[0] / taken[1] - 1.0).abs() < 1e-9 && taken[0] > 0.0, "{taken:?}");
 }
 
 /// The end of a row's boundary and that of a limit differ by a rounding. Contacts slide to the slip-off there, whatever the friction.
@@ -147,21 +135,14 @@ fn turning_points_that_stick_have_states() {
     }
     let found = through_at(&scene, 5.0, &[-10.0, 60.0, 1e-9, 0.0]);
     let [before, at_zero] = [2, 3].map(|i| found.samples[i].force_un.unwrap());
-    assert!(
-        (at_zero / before - 1.0).abs() < 1e-9 && at_zero > 100.0,
-        "{before} {at_zero}"
-    );
+    assert!((at_zero / before - 1.0).abs() < 1e-9 && at_zero > 100.0, "{before} {at_zero}");
 }
 
 /// A contact that sticks at a point stays where it is, however many samples there are. Newton's method stalls at other states of this cylinder.
 #[test]
 fn a_contact_that_sticks_stays() {
     let scene = cone(0.0, 0.0, 0.2);
-    let whisker = Whisker {
-        base_radius_um: 100.0,
-        tip_radius_um: 100.0,
-        ..scene.whisker.clone()
-    };
+    let whisker = Whisker { base_radius_um: 100.0, tip_radius_um: 100.0, ..scene.whisker.clone() };
     let back = to_and_fro(&[112.517, 0.0], 600);
     let angles: Vec<f64> = [-0.5].into_iter().chain(back).collect();
     let times = (0..angles.len()).map(|i| i as f64).collect();
@@ -190,11 +171,7 @@ fn a_first_push_has_the_states_of_the_branch() {
     let mut counts = [0; 3];
     for (side, distance) in Side::BOTH.into_iter().zip(distances) {
         let branch = Branch::new(&scene.whisker, &scene.pole, side, distance).unwrap();
-        for sample in found
-            .samples
-            .iter()
-            .filter(|sample| sample.side == Some(side))
-        {
+        for sample in found.samples.iter().filter(|sample| sample.side == Some(side)) {
             let push = sample.push_angle_deg.unwrap().to_radians();
             let state = branch.state(push, true).unwrap();
             let wanted = branch.read(&state);
@@ -204,10 +181,7 @@ fn a_first_push_has_the_states_of_the_branch() {
                 (sample.energy_nj, wanted.energy_nj),
             ] {
                 let value = value.unwrap();
-                assert!(
-                    (value - wanted).abs() <= 1e-8 * wanted.abs(),
-                    "{push} {value} {wanted}"
-                );
+                assert!((value - wanted).abs() <= 1e-8 * wanted.abs(), "{push} {value} {wanted}");
             }
             assert_eq!(sample.sliding, state.sliding);
             counts[state.sliding.unwrap() as usize] += 1;
@@ -223,20 +197,14 @@ fn a_first_push_has_the_states_of_the_branch() {
 #[test]
 fn a_course_is_that_of_small_steps() {
     const COUNT: u32 = 1500;
-    for (friction, turns) in [
-        (0.3, &[0.0, 12.0, 4.0, 14.0][..]),
-        (0.9, &[0.0, 10.0, 3.0]),
-        (0.3, &[0.0, -20.0, -6.0]),
-    ] {
+    for (friction, turns) in
+        [(0.3, &[0.0, 12.0, 4.0, 14.0][..]), (0.9, &[0.0, 10.0, 3.0]), (0.3, &[0.0, -20.0, -6.0])]
+    {
         let scene = cone(0.02, 0.25, friction);
         let side = Side::of_push(turns[1]);
         let first = through(&scene, &[-1.0, 0.0]);
         // Angles of the base on CF are counted from the touch on CB.
-        let touch = if side == Side::Cb {
-            0.0
-        } else {
-            first.cf_touch_deg
-        };
+        let touch = if side == Side::Cb { 0.0 } else { first.cf_touch_deg };
         let pushes = &to_and_fro(turns, COUNT)[1..];
         let angles: Vec<f64> = pushes.iter().map(|push| push + touch).collect();
         let lead = match side {

@@ -40,16 +40,10 @@ impl Case {
         let mut text = format!(
             "title = \"hard\"\n[whisker]\nlength_mm = {length:?}\nyoungs_modulus_gpa = {gpa:?}\n"
         );
-        let rows: Vec<[f64; 2]> = self
-            .rows
-            .iter()
-            .map(|[s, r]| [s * length, r * base_um])
-            .collect();
+        let rows: Vec<[f64; 2]> =
+            self.rows.iter().map(|[s, r]| [s * length, r * base_um]).collect();
         let _ = if rows.is_empty() {
-            writeln!(
-                text,
-                "base_radius_um = {base_um:?}\ntip_radius_um = {tip_um:?}"
-            )
+            writeln!(text, "base_radius_um = {base_um:?}\ntip_radius_um = {tip_um:?}")
         } else {
             writeln!(text, "[whisker.profile]\nrows = {rows:?}")
         };
@@ -69,10 +63,7 @@ impl Case {
             // `E I_base/L_w` in nN m.
             let moment = 1e18 * gpa * FRAC_PI_4 * (1e-6 * base_um).powi(4) / (1e-3 * length);
             let stiffness = moment / self.compliance;
-            let _ = writeln!(
-                text,
-                "[whisker.follicle]\nstiffness_nnm_per_rad = {stiffness:?}"
-            );
+            let _ = writeln!(text, "[whisker.follicle]\nstiffness_nnm_per_rad = {stiffness:?}");
         }
         if self.pole > 0.0 {
             let radius = self.pole * length;
@@ -97,10 +88,8 @@ impl Case {
         let more = (1..=PUSHES).map(|i| 70.0 * (f64::from(i) / f64::from(PUSHES)).powi(2));
         self.pushes_deg.extend(more.flat_map(|push| [-push, push]));
         let distances = self.distances.iter().copied();
-        let [nearest, farthest] = [
-            distances.clone().fold(1.0, f64::min),
-            distances.fold(0.0, f64::max),
-        ];
+        let [nearest, farthest] =
+            [distances.clone().fold(1.0, f64::min), distances.fold(0.0, f64::max)];
         let more = (1..ROWS).map(|i| f64::from(i) / f64::from(ROWS));
         let more = more.map(|part| nearest + part * (farthest - nearest));
         self.distances.extend(more);

@@ -43,19 +43,11 @@ const BESIDE: [f64; 2] = [1e-5, 1e-7];
 /// Checks the map of one row next to `end_deg`: contact before it, detachment by `kind` beyond it, and no unresolved cell at it. With
 /// friction two branches can exchange their ends. A state of the other branch then exists beyond the end.
 fn ends_at(name: &str, case: &Case, distance: f64, end_deg: f64, kind: DetachmentKind) {
-    let detached = if kind == DetachmentKind::SlipOff {
-        Regime::SlipOff
-    } else {
-        Regime::PullOff
-    };
+    let detached = if kind == DetachmentKind::SlipOff { Regime::SlipOff } else { Regime::PullOff };
     let beside = BESIDE.iter().flat_map(|by| [end_deg - by, end_deg + by]);
     let mut pushes: Vec<f64> = beside.chain([end_deg]).collect();
     pushes.sort_by(f64::total_cmp);
-    let row = Case {
-        pushes_deg: pushes.clone(),
-        distances: vec![distance],
-        ..case.clone()
-    };
+    let row = Case { pushes_deg: pushes.clone(), distances: vec![distance], ..case.clone() };
     let panel = certain(name, &row);
     for (push, regime) in pushes.iter().zip(&panel.regime) {
         let swapped = case.friction > 0.0 && *regime == Regime::Unreachable.code();
@@ -76,20 +68,13 @@ fn pushes_up_to_the_edge_and_past_it() {
         for side in Side::BOTH {
             for end in curve(&scene.whisker, &scene.pole, side, &scene.grid.distance_mm) {
                 assert_ne!(end.kind, DetachmentKind::Unresolved, "{name}");
-                let Some(push) = end
-                    .push_angle_deg
-                    .filter(|push| (0.1..359.0).contains(&push.abs()))
+                let Some(push) =
+                    end.push_angle_deg.filter(|push| (0.1..359.0).contains(&push.abs()))
                 else {
                     continue;
                 };
                 ends += 1;
-                ends_at(
-                    name,
-                    &case,
-                    end.distance_mm / case.length_mm,
-                    push,
-                    end.kind,
-                );
+                ends_at(name, &case, end.distance_mm / case.length_mm, push, end.kind);
             }
         }
     }
@@ -112,11 +97,8 @@ fn both_sides_of_the_corner() {
             let distances = beside.map(|by| distance + by * case.length_mm);
             let ends = curve(&scene.whisker, &scene.pole, side, &distances);
             for (by, end) in beside.iter().zip(ends) {
-                let kind = if *by < 0.0 {
-                    DetachmentKind::SlipOff
-                } else {
-                    DetachmentKind::PullOff
-                };
+                let kind =
+                    if *by < 0.0 { DetachmentKind::SlipOff } else { DetachmentKind::PullOff };
                 assert_eq!(end.kind, kind, "{name}");
                 let push = end.push_angle_deg.unwrap();
                 if push.abs() < 359.0 {
@@ -133,11 +115,7 @@ fn both_sides_of_the_corner() {
 fn fainter_bends_are_refused() {
     let case = &named()[0].1;
     for (bend, fits) in [(1e-12, false), (0.99e-9, false), (1e-9, true)] {
-        let text = Case {
-            bend,
-            ..case.clone()
-        }
-        .text();
+        let text = Case { bend, ..case.clone() }.text();
         assert_eq!(Scene::parse(&text, "hard").is_ok(), fits, "{bend}");
     }
 }

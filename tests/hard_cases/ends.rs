@@ -66,11 +66,7 @@ pub fn agree(scene: &Scene, end: &Detachment) -> Result<(), TestCaseError> {
     )
     .unwrap();
     let regime = |push: f64| map.regime(0, 0, usize::from(push == pushes[1]));
-    let gone = if kind == DetachmentKind::SlipOff {
-        Regime::SlipOff
-    } else {
-        Regime::PullOff
-    };
+    let gone = if kind == DetachmentKind::SlipOff { Regime::SlipOff } else { Regime::PullOff };
     prop_assert_eq!(regime(before), Some(Regime::Contact), "{:?}", end);
     // With friction a state can exist beyond the end that no push from rest reaches.
     let beyond = regime(after);
@@ -128,11 +124,7 @@ fn curves_branches_and_maps_agree_on_ends() {
     let holds = |case: Case| {
         let scene = case.scene();
         for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
-            let alone = scene
-                .to_builder()
-                .distance_mm([end.distance_mm])
-                .build()
-                .unwrap();
+            let alone = scene.to_builder().distance_mm([end.distance_mm]).build().unwrap();
             agree(&alone, &end)?;
             ends.set(ends.get() + usize::from(end.push_angle_deg.is_some()));
         }
@@ -162,9 +154,6 @@ fn a_row_has_the_same_ends_beside_a_nearer_one() {
     let beside = crossings(&[0.05 * distance, distance]);
     assert_eq!((alone.len(), beside.len()), (4, 4));
     for (a, b) in alone.iter().zip(&beside) {
-        assert!(
-            a.edge == b.edge && (a.push - b.push).abs() < 1e-10,
-            "{a:?} {b:?}"
-        );
+        assert!(a.edge == b.edge && (a.push - b.push).abs() < 1e-10, "{a:?} {b:?}");
     }
 }

@@ -18,10 +18,8 @@ struct Away {
 impl Away {
     fn whisker(self) -> Whisker {
         Whisker {
-            curvature: (self.bend > 0.0).then_some(Curvature {
-                parabola_per_mm: self.bend,
-                vertex_mm: 0.0,
-            }),
+            curvature: (self.bend > 0.0)
+                .then_some(Curvature { parabola_per_mm: self.bend, vertex_mm: 0.0 }),
             ..Whisker::cone(1.0, [1.0, 1.0 - self.taper], 3.0)
         }
     }
@@ -59,14 +57,7 @@ fn is(order: f64, orders: &[f64]) -> bool {
 fn small_tapers_tend_to_cylinders() {
     for side in Side::BOTH {
         let cylinder = Away::default().slip(side);
-        let miss = |taper| {
-            Away {
-                taper,
-                ..Away::default()
-            }
-            .slip(side)
-                - cylinder
-        };
+        let miss = |taper| Away { taper, ..Away::default() }.slip(side) - cylinder;
         assert!(is(1.0, &orders("taper", miss)));
         assert!(miss(1e-12).abs() < 1e-8);
     }
@@ -75,10 +66,7 @@ fn small_tapers_tend_to_cylinders() {
 #[test]
 fn small_curvatures_tend_to_straight_whiskers() {
     for taper in [0.0, 0.95] {
-        let straight = Away {
-            taper,
-            ..Away::default()
-        };
+        let straight = Away { taper, ..Away::default() };
         let slip = |bend, side| Away { bend, ..straight }.slip(side);
         let rest = straight.slip(Side::Cb);
         for side in Side::BOTH {
@@ -97,11 +85,7 @@ fn small_curvatures_tend_to_straight_whiskers() {
 fn thin_poles_tend_to_points() {
     for (taper, bend) in [(0.0, 0.0), (0.95, 0.4)] {
         for side in Side::BOTH {
-            let whisker = Away {
-                taper,
-                bend,
-                pole: 0.0,
-            };
+            let whisker = Away { taper, bend, pole: 0.0 };
             let point = whisker.slip(side);
             let miss = |pole| Away { pole, ..whisker }.slip(side) - point;
             assert!(is(1.0, &orders("pole", miss)));
@@ -112,11 +96,7 @@ fn thin_poles_tend_to_points() {
 #[test]
 fn blunt_cones_tend_to_perfect_ones_that_are_never_pulled_off() {
     for side in Side::BOTH {
-        let cone = |tip: f64| Away {
-            taper: 1.0 - tip,
-            bend: 0.4,
-            pole: 0.01,
-        };
+        let cone = |tip: f64| Away { taper: 1.0 - tip, bend: 0.4, pole: 0.01 };
         let perfect = cone(0.0).slip(side);
         let miss = |tip| cone(tip).slip(side) - perfect;
         assert!(is(1.0, &orders("tip", miss)));
@@ -124,22 +104,12 @@ fn blunt_cones_tend_to_perfect_ones_that_are_never_pulled_off() {
         for distance in [0.5, 0.9, 0.93] {
             assert_eq!(tip.end(side, distance).kind, DetachmentKind::SlipOff);
         }
-        assert!(
-            corner(&tip.whisker(), &Pole::smooth(0.01), side)
-                .distance_mm
-                .is_none()
-        );
+        assert!(corner(&tip.whisker(), &Pole::smooth(0.01), side).distance_mm.is_none());
     }
     // The corner of the straight cone tends to its tip.
     let from_tip = |tip: f64| {
-        let cone = Away {
-            taper: 1.0 - tip,
-            bend: 0.0,
-            pole: 0.0,
-        };
-        1.0 - corner(&cone.whisker(), &Pole::smooth(0.0), Side::Cb)
-            .distance_mm
-            .unwrap()
+        let cone = Away { taper: 1.0 - tip, bend: 0.0, pole: 0.0 };
+        1.0 - corner(&cone.whisker(), &Pole::smooth(0.0), Side::Cb).distance_mm.unwrap()
     };
     assert!(is(1.0, &orders("corner", from_tip)));
 }

@@ -33,30 +33,9 @@ fn cylinder(bend: f64, friction: f64, tip_to_base: f64, distance: f64) -> Case {
 fn narrow_dips_are_not_missed() {
     use DetachmentKind::{PullOff, SlipOff};
     let coiled = [
-        (
-            Side::Cb,
-            0.0,
-            0.8985976550518069,
-            1.0,
-            0.01197993778232795,
-            PullOff,
-        ),
-        (
-            Side::Cb,
-            0.1344136525243472,
-            0.8870166499183616,
-            1.0,
-            0.006561675176450292,
-            SlipOff,
-        ),
-        (
-            Side::Cf,
-            0.046872210686984314,
-            0.8550808096527569,
-            1.0,
-            0.004602123462169978,
-            PullOff,
-        ),
+        (Side::Cb, 0.0, 0.8985976550518069, 1.0, 0.01197993778232795, PullOff),
+        (Side::Cb, 0.1344136525243472, 0.8870166499183616, 1.0, 0.006561675176450292, SlipOff),
+        (Side::Cf, 0.046872210686984314, 0.8550808096527569, 1.0, 0.004602123462169978, PullOff),
         (
             Side::Cb,
             0.004535013423207362,
@@ -78,11 +57,8 @@ fn narrow_dips_are_not_missed() {
 /// Difference of the first two folds of `rod` with the contact at the arclength `s` in `q = |load| s^2`, up to 40, on the CB side.
 fn between_folds(rod: &Rod, s: f64) -> f64 {
     const STEP: f64 = 0.05;
-    let condition = |i: i32| InitialCondition {
-        rod,
-        tau: rod.tau(s),
-        load: STEP * f64::from(i) / (s * s),
-    };
+    let condition =
+        |i: i32| InitialCondition { rod, tau: rod.tau(s), load: STEP * f64::from(i) / (s * s) };
     let conditions: Vec<InitialCondition> = (0..800).map(condition).collect();
     let maps = Batch::new(Method::fine()).shoot::<ShootingMap>(&conditions);
     let folds = maps.windows(2).enumerate();
@@ -123,11 +99,7 @@ fn close_folds_are_not_missed() {
         let mut ends = 0;
         for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
             assert_ne!(end.kind, DetachmentKind::Unresolved, "{end:?}");
-            let alone = scene
-                .to_builder()
-                .distance_mm([end.distance_mm])
-                .build()
-                .unwrap();
+            let alone = scene.to_builder().distance_mm([end.distance_mm]).build().unwrap();
             agree(&alone, &end).unwrap();
             ends += usize::from(end.push_angle_deg.is_some());
         }
@@ -139,11 +111,8 @@ fn close_folds_are_not_missed() {
 /// `det` is positive at this load and at all smaller ones. Plain sampling along the load, with twice the steps.
 fn stable_push_deg(rod: &Rod, row: &Row, s: f64) -> f64 {
     const STEP: f64 = 0.005;
-    let condition = |i: i32| InitialCondition {
-        rod,
-        tau: rod.tau(s),
-        load: STEP * f64::from(i) / (s * s),
-    };
+    let condition =
+        |i: i32| InitialCondition { rod, tau: rod.tau(s), load: STEP * f64::from(i) / (s * s) };
     let conditions: Vec<InitialCondition> = (0..3000).map(condition).collect();
     let maps = Batch::new(Method::fine().doubled()).shoot::<ShootingMap>(&conditions);
     let stable: Vec<_> = maps.iter().take_while(|map| map.det() > 0.0).collect();
@@ -157,11 +126,7 @@ fn stable_push_deg(rod: &Rod, row: &Row, s: f64) -> f64 {
 #[test]
 fn a_piece_between_samples_of_the_fold_is_not_missed() {
     let (bend, slope) = (3.388, -1.5577);
-    let case = Case {
-        taper: 1.0,
-        pole: 0.097,
-        ..cylinder(bend, 0.0, 0.23, 0.2772)
-    };
+    let case = Case { taper: 1.0, pole: 0.097, ..cylinder(bend, 0.0, 0.23, 0.2772) };
     let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
     let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
     let rod = scene.first_whisker().rod(Side::Cb);
@@ -199,11 +164,7 @@ fn folds_that_meet_between_samples_are_not_missed() {
     ];
     for (taper, bend, slope, pole, friction, distances) in whiskers {
         for distance in distances {
-            let case = Case {
-                taper,
-                pole,
-                ..cylinder(bend, friction, 1.0, distance)
-            };
+            let case = Case { taper, pole, ..cylinder(bend, friction, 1.0, distance) };
             let vertex_mm = -slope / (2.0 * bend) * case.length_mm;
             let scene = case.scene().with(Parameter::VertexMm, vertex_mm).unwrap();
             for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
@@ -219,22 +180,12 @@ fn folds_that_meet_between_samples_are_not_missed() {
 fn all_pieces_are_found_where_the_fold_leaps() {
     let leaping = Case {
         pole: 0.005195859681852056,
-        ..cylinder(
-            2.9777634126889846,
-            0.4446239876410852,
-            1.0,
-            0.042655084182320564,
-        )
+        ..cylinder(2.9777634126889846, 0.4446239876410852, 1.0, 0.042655084182320564)
     };
     let bisected = Case {
         pole: 0.000111816758367984,
         stretch: 1.003922709284042,
-        ..cylinder(
-            0.9974105441445368,
-            0.9607572582694287,
-            0.735862310097628,
-            0.0028471454535629152,
-        )
+        ..cylinder(0.9974105441445368, 0.9607572582694287, 0.735862310097628, 0.0028471454535629152)
     };
     let whiskers = [
         (leaping, 8.061794309983636, 0.4183332955529271, 3),
@@ -246,11 +197,7 @@ fn all_pieces_are_found_where_the_fold_leaps() {
         let distances = [case.distances[0], farther];
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
         let ends = sheet.crossings.iter().flatten();
-        assert!(
-            ends.clone().all(|end| end.is_sound()),
-            "{:?}",
-            sheet.crossings
-        );
+        assert!(ends.clone().all(|end| end.is_sound()), "{:?}", sheet.crossings);
         assert_eq!(sheet.crossings.iter().map(Vec::len).max(), Some(most));
     }
 }
@@ -258,13 +205,8 @@ fn all_pieces_are_found_where_the_fold_leaps() {
 /// A cylinder that is pushed by a whole turn: with nodes that are on the curve only to 1e-8, the continuation fails.
 #[test]
 fn failed_continuations_are_repeated_with_exact_nodes() {
-    let scene = cylinder(
-        0.007318811503537833,
-        0.8759848018136742,
-        1.0,
-        0.0023229318335218274,
-    )
-    .scene();
+    let scene =
+        cylinder(0.007318811503537833, 0.8759848018136742, 1.0, 0.0023229318335218274).scene();
     let ends = whiskmap::curve(&scene, Options::default()).unwrap();
     assert_eq!(ends.len(), 2);
     for (_, end) in ends {
@@ -279,21 +221,13 @@ fn a_row_that_grazes_the_tip_ends_there() {
     let case = Case {
         taper: 1.0 - 29.5916686304334 / 30.0,
         pole: 0.00027453354913208,
-        ..cylinder(
-            0.023852954975056178,
-            0.9865609968131556,
-            1.0,
-            0.024479462769365525,
-        )
+        ..cylinder(0.023852954975056178, 0.9865609968131556, 1.0, 0.024479462769365525)
     };
     let scene = case.scene();
     for (_, end) in whiskmap::curve(&scene, Options::default()).unwrap() {
         assert_ne!(end.kind, DetachmentKind::Unresolved, "{end:?}");
         agree(&scene, &end).unwrap();
-        assert!(
-            end.side == Side::Cb || end.kind == DetachmentKind::PullOff,
-            "{end:?}"
-        );
+        assert!(end.side == Side::Cb || end.kind == DetachmentKind::PullOff, "{end:?}");
     }
 }
 
@@ -301,12 +235,7 @@ fn a_row_that_grazes_the_tip_ends_there() {
 /// distance, so an error of the logarithm counts 29 times.
 #[test]
 fn ends_that_change_fast_with_the_distance_are_as_exact() {
-    let rod = Rod {
-        taper: 0.476,
-        pole: 9e-4,
-        gradient: 7.89,
-        ..Rod::default()
-    };
+    let rod = Rod { taper: 0.476, pole: 9e-4, gradient: 7.89, ..Rod::default() };
     let at_end = |method| {
         let sheet = Sheet::new(method, &rod, Side::Cb, &[0.9967]);
         sheet.crossings[0][0]

@@ -12,14 +12,7 @@ pub fn even_in_log(from: f64, to: f64) -> impl Strategy<Value = f64> {
 
 /// Strategy for push angles in degrees, from 1e-12 to almost a whole turn, on both sides.
 fn pushes_deg() -> impl Strategy<Value = Vec<f64>> {
-    let side = || {
-        (
-            even_in_log(1e-12, 0.5),
-            1.0..60.0_f64,
-            61.0..180.0_f64,
-            181.0..360.0_f64,
-        )
-    };
+    let side = || (even_in_log(1e-12, 0.5), 1.0..60.0_f64, 61.0..180.0_f64, 181.0..360.0_f64);
     (side(), side()).prop_map(|(cf, cb)| vec![-cf.3, -cf.2, -cf.1, -cf.0, cb.0, cb.1, cb.2, cb.3])
 }
 
@@ -33,13 +26,7 @@ pub fn cases() -> impl Strategy<Value = Case> {
         1 => Just(1.0 - 1e-6),
         1 => Just(1.0),
     ];
-    let bend = prop_oneof![
-        Just(0.0),
-        Just(1e-9),
-        even_in_log(1e-9, 1.5),
-        0.0..1.5_f64,
-        Just(1.5)
-    ];
+    let bend = prop_oneof![Just(0.0), Just(1e-9), even_in_log(1e-9, 1.5), 0.0..1.5_f64, Just(1.5)];
     let pole = prop_oneof![Just(0.0), even_in_log(1e-9, 0.1), 0.0..0.1_f64, Just(0.1)];
     let friction = prop_oneof![2 => Just(0.0), 2 => 0.0..1.0_f64, 1 => Just(1.0)];
     let tip_to_base =
@@ -93,11 +80,7 @@ pub fn measured() -> impl Strategy<Value = Case> {
         let taper = 1.0 - rows[rows.len() - 1][1];
         // The modulus ratio of tip and base must be between 1/20 and 20.
         let change = case.tip_to_base - 1.0;
-        let softest = if change < 0.0 {
-            -0.95 / change
-        } else {
-            19.0 / change
-        };
+        let softest = if change < 0.0 { -0.95 / change } else { 19.0 / change };
         Case {
             stretch: stretch.min(0.999 / taper).min(0.999 * softest).max(1.0),
             rows,

@@ -22,13 +22,9 @@ impl States {
         let units = scene.whisker.units();
         let [arc_length_mm, _, force_un, ..] = &panel.state;
         let pushes = scene.grid.push_angle_deg.iter().cycle();
-        let cells = pushes
-            .zip(&panel.status)
-            .zip(arc_length_mm.iter().zip(force_un));
+        let cells = pushes.zip(&panel.status).zip(arc_length_mm.iter().zip(force_un));
         let states = cells.filter_map(|((push, status), (arc_length_mm, force_un))| {
-            let side = Side::BOTH
-                .iter()
-                .position(|side| *side == Side::of_push(*push))?;
+            let side = Side::BOTH.iter().position(|side| *side == Side::of_push(*push))?;
             let rod = &rods[side];
             let s = f64::from(*arc_length_mm) / scene.whisker.length_mm;
             let tau = match rod.taper {
@@ -40,11 +36,7 @@ impl States {
             is_there.then_some((side, tau, Side::BOTH[side].sign() * load))
         });
         let states = states.collect();
-        Self {
-            effects: Effects::of(&rods),
-            rods,
-            states,
-        }
+        Self { effects: Effects::of(&rods), rods, states }
     }
 
     pub fn conditions(&self) -> Vec<InitialCondition<'_>> {
@@ -64,13 +56,8 @@ pub fn halving(
 ) -> Vec<f64> {
     let poles = |resolution| {
         let method = Method::new(resolution).with_effects(effects);
-        Batch::new(method)
-            .shoot::<ShootingMap>(conditions)
-            .into_iter()
+        Batch::new(method).shoot::<ShootingMap>(conditions).into_iter()
     };
     let moved = |(a, b): (ShootingMap, ShootingMap)| a.pole.distance(b.pole);
-    poles(resolution)
-        .zip(poles(resolution.doubled()))
-        .map(moved)
-        .collect()
+    poles(resolution).zip(poles(resolution.doubled())).map(moved).collect()
 }

@@ -20,11 +20,7 @@ const POWERS: [(&str, i32); STATE_CHANNELS.len()] = [
 
 /// Largest difference of a channel, with `b` divided by `factor`, relative to its largest value.
 fn difference(a: &[f32], b: &[f32], factor: f64) -> f64 {
-    let pairs = || {
-        a.iter()
-            .zip(b)
-            .map(|(a, b)| (f64::from(*a), f64::from(*b) / factor))
-    };
+    let pairs = || a.iter().zip(b).map(|(a, b)| (f64::from(*a), f64::from(*b) / factor));
     let largest = pairs().map(|(a, _)| a.abs()).filter(|a| a.is_finite());
     let largest = largest.fold(f64::MIN_POSITIVE, f64::max);
     let apart = pairs().map(|(a, b)| match (a.is_nan(), b.is_nan()) {
@@ -46,20 +42,14 @@ fn lengths_and_moduli_scale() {
         let reference = map(&case, 3.0);
         assert_eq!(case.length_mm, 20.0, "{name}");
         for length_mm in [0.1, 1000.0] {
-            let scaled = Case {
-                length_mm,
-                ..case.clone()
-            };
+            let scaled = Case { length_mm, ..case.clone() };
             let panel = map(&scaled, 3.0);
             assert_eq!(panel.regime, reference.regime, "{name} at {length_mm} mm");
             let channels = reference.state.iter().zip(&panel.state);
             for ((a, b), (channel, power)) in channels.zip(POWERS) {
                 let factor = (length_mm / case.length_mm).powi(power);
                 let miss = difference(a, b, factor);
-                assert!(
-                    miss <= 2e-7,
-                    "{name} at {length_mm} mm: {channel} {miss:.1e}"
-                );
+                assert!(miss <= 2e-7, "{name} at {length_mm} mm: {channel} {miss:.1e}");
             }
         }
         let soft = map(&case, 3e-6);

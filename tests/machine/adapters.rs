@@ -27,10 +27,7 @@ fn software_comes_last_and_the_first_of_equals_wins() {
         DeviceType::DiscreteGpu,
     ];
     assert_eq!(preferred(&kinds.map(report), Precision::F32), Some(2));
-    assert_eq!(
-        preferred(&[report(DeviceType::Cpu)], Precision::F32),
-        Some(0)
-    );
+    assert_eq!(preferred(&[report(DeviceType::Cpu)], Precision::F32), Some(0));
     assert_eq!(preferred(&[], Precision::F32), None);
 }
 

@@ -48,10 +48,7 @@ impl Seen {
         let misses = maps.iter().zip(&wanted);
         let misses = misses.map(|(map, (pole, _))| map.pole.distance(*pole));
         let mut misses: Vec<f64> = misses.collect();
-        let of_bound = misses
-            .iter()
-            .zip(&wanted)
-            .map(|(miss, (_, bound))| miss / bound);
+        let of_bound = misses.iter().zip(&wanted).map(|(miss, (_, bound))| miss / bound);
         let of_bound = of_bound.fold(0.0, f64::max);
         misses.sort_by(f64::total_cmp);
         Self {
@@ -89,14 +86,8 @@ fn a_wrong_shader_breaks_its_bounds() {
     for (good, bad) in [
         ("let to_end = max(", "let to_end = 1.001 * max("),
         ("end.state - left", "end.state - 1.001 * left"),
-        (
-            "row.place - left);\n    let end",
-            "row.place - 0.99 * left);\n    let end",
-        ),
-        (
-            "pushes[head.y + id - head.x]",
-            "pushes[head.y + id - head.x + 1u]",
-        ),
+        ("row.place - left);\n    let end", "row.place - 0.99 * left);\n    let end"),
+        ("pushes[head.y + id - head.x]", "pushes[head.y + id - head.x + 1u]"),
         ("return first;", "return max(first, 1u) - 1u;"),
         ("select(2.0 * y, y, power == 1u)", "2.0 * y"),
     ] {

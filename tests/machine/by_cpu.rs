@@ -15,9 +15,7 @@ static MAPS: Mutex<BTreeMap<String, &'static OnceLock<WholeMap>>> = Mutex::new(B
 /// Returns the map of `scene` by the CPU engine. Equal scenes are computed once.
 pub fn by_cpu(scene: &Scene) -> &'static WholeMap {
     let mut maps = MAPS.lock().unwrap();
-    let map = *maps
-        .entry(format!("{scene:?}"))
-        .or_insert_with(|| Box::leak(Box::default()));
+    let map = *maps.entry(format!("{scene:?}")).or_insert_with(|| Box::leak(Box::default()));
     drop(maps);
     map.get_or_init(|| compute(scene, None))
 }

@@ -36,9 +36,8 @@ fn said(run: &Run) -> &str {
 fn auto_times_the_engines_for_a_large_map() {
     let place = Place::with(&large());
     let adapter = adapter(&place);
-    let map: Vec<&str> = "map scene.toml --no-png --channels regime,force_un --threads 1"
-        .split(' ')
-        .collect();
+    let map: Vec<&str> =
+        "map scene.toml --no-png --channels regime,force_un --threads 1".split(' ').collect();
     let devices = place.run(&["devices"]).out;
     let is_first = |line: &&str| line.get(2..4) == Some("0 ");
     if devices.lines().find(is_first).unwrap().contains("software") {
@@ -63,10 +62,7 @@ fn auto_times_the_engines_for_a_large_map() {
         }
     };
     let times = times.and_then(|times| times.strip_suffix(" times "));
-    assert!(
-        times.is_some_and(|times| times.parse::<f64>().unwrap() >= 1.0),
-        "{said}"
-    );
+    assert!(times.is_some_and(|times| times.parse::<f64>().unwrap() >= 1.0), "{said}");
 }
 
 fn adapters_are_taken_by_number_and_name() {
@@ -97,10 +93,7 @@ fn adapters_are_taken_by_number_and_name() {
     }
     let devices = named(&["devices"], "abacus");
     assert_eq!(devices.code, Some(2), "{devices:?}");
-    assert!(
-        devices.err.contains(&allowed) && !devices.out.contains('*'),
-        "{devices:?}"
-    );
+    assert!(devices.err.contains(&allowed) && !devices.out.contains('*'), "{devices:?}");
 }
 
 /// Regimes follow from the ends of rows. The file names the engine that solved.
@@ -127,12 +120,7 @@ fn a_missing_driver_is_named() {
     let place = Place::with(SCENE);
     let without = |arguments: &[&str]| {
         let mut command = place.command(arguments);
-        Run::of(
-            &command
-                .env("VK_DRIVER_FILES", "none.json")
-                .output()
-                .unwrap(),
-        )
+        Run::of(&command.env("VK_DRIVER_FILES", "none.json").output().unwrap())
     };
     let what = "no Vulkan driver is installed: no file in VK_DRIVER_FILES=none.json";
     let run = without(&["map", "scene.toml", "--engine", "gpu"]);
@@ -152,9 +140,7 @@ fn a_file_states_the_tolerances_of_its_engine() {
         place.good(&[&["map", "scene.toml", "--no-png"], arguments].concat());
         let map = StoredMap::open(&place.path("outputs/scene.exr")).unwrap();
         let tolerances = map.attribute("tolerances").unwrap();
-        let accepted = tolerances["residual_accepted_whisker_lengths"]
-            .as_f64()
-            .unwrap();
+        let accepted = tolerances["residual_accepted_whisker_lengths"].as_f64().unwrap();
         let residuals = map.read_channel("residual").unwrap();
         let worst = residuals.values().fold(0.0, f64::max);
         assert!(worst > 0.0 && worst <= accepted, "{worst:e}: {tolerances}");

@@ -32,10 +32,7 @@ fn some() -> RandomRows {
 }
 
 /// A cell as bits; only the outcome if it is not solved.
-type CellBits = (
-    Outcome,
-    Option<([u32; STATE_CHANNELS.len()], u32, [u64; 2])>,
-);
+type CellBits = (Outcome, Option<([u32; STATE_CHANNELS.len()], u32, [u64; 2])>);
 
 fn bits(cells: &Cells) -> Vec<CellBits> {
     let bits = |index: usize| {
@@ -52,10 +49,7 @@ fn bits(cells: &Cells) -> Vec<CellBits> {
 }
 
 fn solved(cells: &Cells) -> usize {
-    let solved = cells
-        .outcome
-        .iter()
-        .filter(|outcome| **outcome == Outcome::Solved);
+    let solved = cells.outcome.iter().filter(|outcome| **outcome == Outcome::Solved);
     solved.count()
 }
 
@@ -189,22 +183,14 @@ fn a_batch_without_expansions_is_no_failure(engine: &mut dyn Engine) {
 fn a_nan_hurts_only_the_cells_of_its_row(precision: Precision) {
     let mut gpu = open(precision);
     let batch = some().batch(&gpu);
-    let number = (0..batch.rows.len())
-        .filter(|row| batch.expansions[*row].is_some())
-        .nth(40)
-        .unwrap();
+    let number =
+        (0..batch.rows.len()).filter(|row| batch.expansions[*row].is_some()).nth(40).unwrap();
     let sound = bits(&solve(&mut gpu, &batch));
     type Spoil = fn(&mut RowExpansion);
     let spoils: [(&str, Spoil); 4] = [
-        ("push angle", |row| {
-            row.inverse.functions.coefficients[3][0] = f64::NAN
-        }),
-        ("tau", |row| {
-            row.inverse.functions.coefficients[2][1] = f64::INFINITY
-        }),
-        ("channel", |row| {
-            row.inverse.functions.coefficients[1][7] = f64::NAN
-        }),
+        ("push angle", |row| row.inverse.functions.coefficients[3][0] = f64::NAN),
+        ("tau", |row| row.inverse.functions.coefficients[2][1] = f64::INFINITY),
+        ("channel", |row| row.inverse.functions.coefficients[1][7] = f64::NAN),
         ("residual", |row| row.residual = f64::NAN),
     ];
     for (what, spoil) in spoils {

@@ -45,21 +45,12 @@ impl Seen {
                 return Err(format!("{channel}: {worst:.1e}"));
             }
         }
-        Ok(Self {
-            cells: summary.engine_cells,
-            apart,
-        })
+        Ok(Self { cells: summary.engine_cells, apart })
     }
 
     fn add(&mut self, more: Self) {
-        let EngineCells {
-            solved,
-            near_edge,
-            missed,
-            not_finite,
-            without_row,
-            on_cpu_instead,
-        } = more.cells;
+        let EngineCells { solved, near_edge, missed, not_finite, without_row, on_cpu_instead } =
+            more.cells;
         let sum = &mut self.cells;
         sum.solved += solved;
         sum.near_edge += near_edge;
@@ -120,11 +111,7 @@ fn named_cases_are_solved_or_fall_back(precision: Precision) {
         table += &seen.line(name);
         all.add(seen);
     }
-    let EngineCells {
-        solved,
-        without_row,
-        ..
-    } = all.cells;
+    let EngineCells { solved, without_row, .. } = all.cells;
     // Sheets with several folds have no net.
     assert!(2 * solved > without_row, "{:?}", all.cells);
     table += &all.line("all");

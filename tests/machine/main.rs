@@ -2,11 +2,7 @@
 //! program.
 //!
 //! A test that cannot run here is ignored with the reason, which needs a harness other than that of the standard library.
-#![allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test fails by panicking"
-)]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 /// The tests of a module: their names, and what each group of them needs.
 macro_rules! tests {
@@ -116,9 +112,7 @@ fn main() -> ExitCode {
                 .zip(&missing)
                 .map(|(&precision, missing)| {
                     let name = format!("{name}::{precision}");
-                    trial(&arguments, &name, missing.as_deref(), move || {
-                        run(precision)
-                    })
+                    trial(&arguments, &name, missing.as_deref(), move || run(precision))
                 })
                 .collect(),
         }

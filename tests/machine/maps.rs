@@ -76,16 +76,11 @@ fn values_near_touch_have_their_digits(precision: Precision) {
     for (i, name) in STATE_CHANNELS.iter().enumerate() {
         let [wanted, found] = [&wanted, &found].map(|panels| &panels[0].state[i]);
         let known = wanted.iter().zip(found).filter(|(x, _)| !x.is_nan());
-        let largest = known
-            .clone()
-            .fold(0.0, |most, (x, _)| f32::max(most, x.abs()));
+        let largest = known.clone().fold(0.0, |most, (x, _)| f32::max(most, x.abs()));
         let apart = known.fold(0.0, |most, (x, y)| f32::max(most, (x - y).abs()));
         assert!(apart < 1e-5 * largest, "{name}: {apart:e} of {largest:e}");
         let is_load = ["force_un", "energy_nj"].contains(name);
-        assert!(
-            !is_load || found.iter().all(|load| load.is_nan() || *load >= 0.0),
-            "{name}"
-        );
+        assert!(!is_load || found.iter().all(|load| load.is_nan() || *load >= 0.0), "{name}");
     }
 }
 
@@ -101,10 +96,7 @@ fn what_an_engine_cannot_is_done_by_the_cpu(precision: Precision) {
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let without_row = summary.engine_cells.without_row;
         assert!(without_row > 0);
-        let only = EngineCells {
-            without_row,
-            ..EngineCells::default()
-        };
+        let only = EngineCells { without_row, ..EngineCells::default() };
         assert_eq!(summary.engine_cells, only);
         assert_identical(&cpu, &panels);
     }

@@ -48,12 +48,7 @@ fn by_cpu(nodes: &Nodes) -> Vec<PlainState> {
 
 impl<F: FnMut(&Nodes, usize) -> States + Send> Shooting<F> {
     fn new(shoot: F) -> Self {
-        Self {
-            spectral: Spectral::default(),
-            shoot,
-            collected: 0,
-            most: usize::MAX,
-        }
+        Self { spectral: Spectral::default(), shoot, collected: 0, most: usize::MAX }
     }
 }
 
@@ -157,12 +152,7 @@ fn an_engine_that_fails_to_integrate_is_disabled() {
 fn a_failure_keeps_its_reason_whatever_waits() {
     let (_, wanted) = sweep(None);
     for rows in [16, 100, 1 << 10] {
-        for (most, sound) in [
-            (0, usize::MAX),
-            (3, usize::MAX),
-            (usize::MAX, 0),
-            (usize::MAX, 5),
-        ] {
+        for (most, sound) in [(0, usize::MAX), (3, usize::MAX), (usize::MAX, 0), (usize::MAX, 5)] {
             let mut engine = Shooting::new(|nodes: &Nodes, collected| match collected < sound {
                 true => Ok(by_cpu(nodes)),
                 false => Err(EngineError::Device("lost".to_owned())),
@@ -188,11 +178,7 @@ fn a_table_with_measured_radii_keeps_the_device() {
     let plan = Plan::new(&scene).unwrap();
     let (_, wanted) = compute_as(&scene, &plan, None);
     let (summary, panels) = compute_as(&scene, &plan, Some(&mut open(Precision::F64)));
-    assert!(
-        summary.engine_failure.is_none(),
-        "{:?}",
-        summary.engine_failure
-    );
+    assert!(summary.engine_failure.is_none(), "{:?}", summary.engine_failure);
     assert!(summary.engine_cells.solved > 1000);
     assert_eq!(summary.trajectories, 0);
     assert_eq!(summary.unresolved(), 0);

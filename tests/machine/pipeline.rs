@@ -166,10 +166,7 @@ fn the_spectral_engine_is_a_stage() {
     for stage in [Stage::Rows, Stage::Cells] {
         assert!(summary.stage_seconds(stage) > 0.0, "{stage:?}");
     }
-    assert_eq!(
-        (summary.device_seconds, summary.waiting_seconds),
-        (0.0, 0.0)
-    );
+    assert_eq!((summary.device_seconds, summary.waiting_seconds), (0.0, 0.0));
     let all = Stage::ALL.map(|(stage, _)| summary.stage_seconds(stage));
     let sequence = all.iter().sum::<f64>() - summary.stage_seconds(Stage::Packing);
     assert!(sequence <= summary.wall_seconds + 1e-9, "{all:?}");

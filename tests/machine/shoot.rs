@@ -41,10 +41,7 @@ fn assert_near(found: &[PlainState], wanted: &[PlainState], precision: Precision
     assert_eq!(found.len(), wanted.len());
     for (found, wanted) in found.iter().zip(wanted) {
         let apart = apart(found, wanted);
-        assert!(
-            apart.iter().all(|part| *part < allowed(precision)),
-            "{apart:?}"
-        );
+        assert!(apart.iter().all(|part| *part < allowed(precision)), "{apart:?}");
     }
 }
 
@@ -67,25 +64,16 @@ fn trajectories_are_those_of_the_cpu(precision: Precision) {
 /// Sweeps share kernels: a cylinder is integrated as a cone that does not taper, a straight whisker as one that does not bend.
 fn effects_that_a_whisker_lacks_change_rounding_alone(precision: Precision) {
     let mut gpu = open(precision);
-    let all = Effects {
-        taper: true,
-        curvature: true,
-        ..Effects::default()
-    };
+    let all = Effects { taper: true, curvature: true, ..Effects::default() };
     let conditions = conditions(Effects::default(), 100, 6.0, 9);
-    let [alone, with_all] = [Effects::default(), all].map(|effects| {
-        gpu.shoot(Method::fine().with_effects(effects), &conditions)
-            .unwrap()
-    });
+    let [alone, with_all] = [Effects::default(), all]
+        .map(|effects| gpu.shoot(Method::fine().with_effects(effects), &conditions).unwrap());
     assert_near(&alone, &with_all, precision);
 }
 
 /// The effects of any rod count, also beside others.
 fn measured_radii_are_refused(precision: Precision) {
-    let profile = Effects {
-        profile: true,
-        ..Effects::default()
-    };
+    let profile = Effects { profile: true, ..Effects::default() };
     let mut mixed = conditions(Effects::default(), 8, 6.0, 3);
     let mut gpu = open(precision);
     assert!(gpu.shoot(Method::fine(), &mixed).is_ok());
@@ -113,17 +101,11 @@ fn fans_are_those_of_the_cpu(precision: Precision) {
 /// Two kinds of rods take turns, and each kind takes several submissions. A thread of a pool reads their states with the others, this one alone.
 fn states_of_several_submissions_are_in_order(precision: Precision) {
     let mut gpu = open(precision);
-    let curved = Effects {
-        curvature: true,
-        ..Effects::default()
-    };
+    let curved = Effects { curvature: true, ..Effects::default() };
     let kinds = [Effects::default(), curved].map(|effects| conditions(effects, 9000, 6.0, 11));
     let [straight, curved] = &kinds;
-    let list: Vec<InitialCondition> = straight
-        .iter()
-        .zip(curved)
-        .flat_map(|(one, other)| [*one, *other])
-        .collect();
+    let list: Vec<InitialCondition> =
+        straight.iter().zip(curved).flat_map(|(one, other)| [*one, *other]).collect();
     let wanted = Batch::new(Method::fine()).shoot::<PlainState>(&list);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(3);
     let pool = pool.build().unwrap();

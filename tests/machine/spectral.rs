@@ -40,9 +40,7 @@ fn states_and_values_are_within_their_bounds() {
             let found = (0..cells.len()).filter(|i| cells.outcome[*i] == Outcome::Solved);
             let found: Vec<usize> = found.collect();
             let rod = |i: &usize| &batch.sides[places[*i].0].sheet.rod;
-            let conditions = found
-                .iter()
-                .map(|i| InitialCondition::new(rod(i), cells.points[*i]));
+            let conditions = found.iter().map(|i| InitialCondition::new(rod(i), cells.points[*i]));
             let conditions: Vec<InitialCondition> = conditions.collect();
             let maps = Batch::new(batch.method).shoot::<ShootingMap>(&conditions);
             for (i, map) in found.iter().zip(maps) {
@@ -50,10 +48,7 @@ fn states_and_values_are_within_their_bounds() {
                 let side = &batch.sides[side];
                 let miss = map.pole.distance(side.sheet.rows[row].pole(push));
                 let bound = f64::from(cells.residual[*i]);
-                assert!(
-                    miss <= bound && bound <= 1.01e-10,
-                    "{name}: {miss:e} {bound:e}"
-                );
+                assert!(miss <= bound && bound <= 1.01e-10, "{name}: {miss:e} {bound:e}");
                 assert_eq!(wanted.outcome[*i], Outcome::Solved, "{name}");
                 let sizes = side.sizes(&side.sheet.crossings[row][0]);
                 let (value, other) = (cells.get(*i).values, wanted.get(*i).values);
@@ -61,10 +56,7 @@ fn states_and_values_are_within_their_bounds() {
                     let [value, other] = [value[channel], other[channel]].map(f64::from);
                     let rounding = f64::from(f32::EPSILON) * other.abs();
                     let apart = (value - other).abs();
-                    assert!(
-                        apart <= 1e-9 * size + rounding,
-                        "{name} {channel}: {value} {other}"
-                    );
+                    assert!(apart <= 1e-9 * size + rounding, "{name} {channel}: {value} {other}");
                 }
             }
             solved += found.len();
@@ -118,9 +110,7 @@ fn assert_same_map(scene: &Scene, wanted: &[Panel], found: &[Panel]) {
                     let values = values.iter().zip(&grid.push_angle_deg);
                     let of_side =
                         values.filter(|(_, push)| Side::of_push(**push) == side.sheet.side);
-                    of_side.fold(0.0, |most, (value, _)| {
-                        f64::max(most, f64::from(value.abs()))
-                    })
+                    of_side.fold(0.0, |most, (value, _)| f64::max(most, f64::from(value.abs())))
                 };
                 let place = Channel::Force as usize;
                 let force = largest(place);
@@ -171,11 +161,7 @@ fn maps_of_shipped_scenes_are_those_of_the_cpu() {
         let has_profile = Plan::new(&scene).unwrap().method.effects.profile;
         let others = cells.fallback() + cells.without_row;
         let part = cells.solved as f64 / (cells.solved + others).max(1) as f64;
-        assert!(
-            has_profile || is_small || part > SOLVED,
-            "{}: {part} {cells:?}",
-            scene.title
-        );
+        assert!(has_profile || is_small || part > SOLVED, "{}: {part} {cells:?}", scene.title);
     }
 }
 
@@ -187,18 +173,10 @@ fn random_sweep(seed: u64) -> Scene {
     let base_um = length * between(0.8, 3.0);
     let friction = between(-0.5, 0.5).max(0.0);
     let pole = length * between(0.0, 0.03);
-    let modulus = if between(0.0, 1.0) < 0.3 {
-        between(0.5, 2.0)
-    } else {
-        1.0
-    };
+    let modulus = if between(0.0, 1.0) < 0.3 { between(0.5, 2.0) } else { 1.0 };
     let tapers = [between(0.0, 0.6), between(0.6, 1.0)];
     let curvatures = [between(0.0, 0.3), between(0.3, 1.2)].map(|bend| bend / length);
-    let (pushes, distances) = if between(0.0, 1.0) < 0.5 {
-        (240, 64)
-    } else {
-        (480, 9)
-    };
+    let (pushes, distances) = if between(0.0, 1.0) < 0.5 { (240, 64) } else { (480, 9) };
     let push = between(30.0, 110.0);
     let nearest = length * between(0.1, 0.3);
     let text = format!(
@@ -241,10 +219,7 @@ fn small_values_next_to_reach_are_exact() {
         let distances: Vec<f64> = far.chain(near).collect();
         let halves = (0..540).map(|i| 10_f64.powf(-9.0 + 0.02 * f64::from(i)));
         let pushes: Vec<f64> = halves.flat_map(|push| [-push, push]).collect();
-        let mut pushes: Vec<f64> = pushes
-            .into_iter()
-            .filter(|push| push.abs() < 80.0)
-            .collect();
+        let mut pushes: Vec<f64> = pushes.into_iter().filter(|push| push.abs() < 80.0).collect();
         pushes.extend((1..60).flat_map(|i| [-f64::from(i), f64::from(i)]));
         pushes.sort_by(f64::total_cmp);
         pushes.dedup();
@@ -262,10 +237,7 @@ fn measured_radii_fall_back() {
         let (_, wanted) = compute(&scene, None);
         let (summary, found) = compute(&scene, Some(&mut Spectral::default()));
         let without_row = summary.engine_cells.without_row;
-        let only = EngineCells {
-            without_row,
-            ..EngineCells::default()
-        };
+        let only = EngineCells { without_row, ..EngineCells::default() };
         assert!(without_row > 0);
         assert_eq!(summary.engine_cells, only);
         assert!(summary.engine_failure.is_none() && summary.audit.cells == 0);

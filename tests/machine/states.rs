@@ -73,22 +73,12 @@ fn compare(rows: &RandomRows, gpu: &mut Gpu) -> Seen {
         differences.push((side, apart));
     }
     let apart = |i: usize| {
-        let parts = differences
-            .iter()
-            .map(|(side, apart)| apart[i] / largest[*side][i]);
+        let parts = differences.iter().map(|(side, apart)| apart[i] / largest[*side][i]);
         let mut parts: Vec<f64> = parts.filter(|part| !part.is_nan()).collect();
         parts.sort_by(f64::total_cmp);
-        (
-            parts.get(parts.len() / 2).copied().unwrap_or(0.0),
-            parts.last().copied().unwrap_or(0.0),
-        )
+        (parts.get(parts.len() / 2).copied().unwrap_or(0.0), parts.last().copied().unwrap_or(0.0))
     };
-    Seen {
-        asked,
-        solved,
-        contradicted,
-        apart: std::array::from_fn(apart),
-    }
+    Seen { asked, solved, contradicted, apart: std::array::from_fn(apart) }
 }
 
 fn cells_are_those_of_the_refinement(precision: Precision) {
@@ -105,10 +95,7 @@ fn cells_are_those_of_the_refinement(precision: Precision) {
         );
     }
     // Others are at the tip.
-    assert!(
-        solved > 500_000 && solved > asked * 99 / 100,
-        "{solved} of {asked}"
-    );
+    assert!(solved > 500_000 && solved > asked * 99 / 100, "{solved} of {asked}");
 }
 
 /// A wrong constant in any of the numbers shows.
@@ -117,10 +104,7 @@ fn a_wrong_number_shows() {
     let text = shaders::cells(Precision::F32);
     for (good, bad) in [
         ("f32(state.w)", "f32(1.001 * state.w)"),
-        (
-            "f32(middle.x), f32(middle.y)",
-            "f32(middle.y), f32(middle.x)",
-        ),
+        ("f32(middle.x), f32(middle.y)", "f32(middle.y), f32(middle.x)"),
         ("f32(last.w)", "f32(last.z)"),
         ("end.middle - left", "end.middle - 1.0001 * left"),
         ("end.last - left", "end.last + left"),

@@ -14,11 +14,7 @@ fn the_boundary_runs_where_the_margins_say() {
         for (column, angle) in angles.iter().enumerate() {
             let margin = 40.0 - distance - angle.abs();
             let cell = row * angles.len() + column;
-            panel.margin_deg[cell] = if margin > 0.0 {
-                margin as f32
-            } else {
-                f32::NAN
-            };
+            panel.margin_deg[cell] = if margin > 0.0 { margin as f32 } else { f32::NAN };
             panel.regime[cell] = if margin > 0.0 { 1 } else { 2 };
         }
     }
@@ -34,10 +30,7 @@ fn the_boundary_runs_where_the_margins_say() {
             let up = fraction(&scene.grid.distance_mm, distance);
             let across = fraction(angles, edge);
             let dark = |colour: [u8; 3]| colour.iter().all(|channel| *channel < 0x60);
-            assert!(
-                dark(body(&picture, across, up)),
-                "{distance} mm, {edge} deg"
-            );
+            assert!(dark(body(&picture, across, up)), "{distance} mm, {edge} deg");
             let away = 8.0 / 1280.0;
             assert!(!dark(body(&picture, across - away, up)));
             assert!(!dark(body(&picture, across + away, up)));
@@ -57,10 +50,7 @@ fn boundary(angles: &[f64], margins: &[f32]) -> Vec<Vec<[f64; 2]>> {
     let [left, top, right, bottom] = frame(&document);
     let ends = |values: &[f64]| {
         let last = values.len() - 1;
-        [
-            1.5 * values[0] - 0.5 * values[1],
-            1.5 * values[last] - 0.5 * values[last - 1],
-        ]
+        [1.5 * values[0] - 0.5 * values[1], 1.5 * values[last] - 0.5 * values[last - 1]]
     };
     let ([low, high], [near, far]) = (ends(angles), ends(&scene.grid.distance_mm));
     let back = |[x, y]: [f64; 2]| {
@@ -69,16 +59,10 @@ fn boundary(angles: &[f64], margins: &[f32]) -> Vec<Vec<[f64; 2]>> {
         // Two decimals of a pixel are less than a thousandth of either.
         [angle, distance].map(|value| (value * 1e3).round() / 1e3)
     };
-    let thick = document
-        .lines()
-        .filter(|line| line.contains("stroke-width=\"3\""));
+    let thick = document.lines().filter(|line| line.contains("stroke-width=\"3\""));
     let lines = polylines(&thick.collect::<Vec<_>>().join("\n"));
-    let inside = lines
-        .into_iter()
-        .filter(|(points, _)| points[0][1] > top - 0.01);
-    inside
-        .map(|(points, _)| points.into_iter().map(back).collect())
-        .collect()
+    let inside = lines.into_iter().filter(|(points, _)| points[0][1] > top - 0.01);
+    inside.map(|(points, _)| points.into_iter().map(back).collect()).collect()
 }
 
 #[test]
@@ -94,10 +78,7 @@ fn the_boundary_follows_from_the_cell_nearest_detachment() {
 #[test]
 fn the_boundary_breaks_at_jumps_and_gaps_and_ends_at_the_axis() {
     let margins = [5.0, 5.5, 5.25, 14.0, f32::NAN, 14.0, 16.0];
-    let cells: Vec<f32> = margins
-        .into_iter()
-        .flat_map(|margin| [margin, f32::NAN])
-        .collect();
+    let cells: Vec<f32> = margins.into_iter().flat_map(|margin| [margin, f32::NAN]).collect();
     let expected = [
         vec![[5.0, 0.0], [5.5, 1.0], [5.25, 2.0]],
         // From 14 at 5 mm to 16 at 6 mm, on an axis that ends at 15.

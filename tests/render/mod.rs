@@ -48,18 +48,13 @@ fn picture(
     )
     .unwrap();
     writer.write_panels(panels).unwrap();
-    writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap();
+    writer.finish(EngineCells::default(), Audit::default()).unwrap();
     render::map(&StoredMap::open(&file).unwrap().into(), options)
 }
 
 /// Draws one channel of a map, or the regimes.
 fn draw(scene: &SceneData, panels: &[Panel], channel: Option<&str>) -> Pixels {
-    let options = MapOptions {
-        channel,
-        ..MapOptions::default()
-    };
+    let options = MapOptions { channel, ..MapOptions::default() };
     Pixels::of(&picture(scene, panels, &options).unwrap())
 }
 

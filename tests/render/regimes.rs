@@ -21,17 +21,8 @@ fn a_regime_map_shows_every_cell_where_it_belongs() {
         (32.0, [PULL_OFF, CONTACT]),
     ] {
         let across = (angle + 72.5) / 105.0;
-        for (up, colour) in [
-            (0.01, row[0]),
-            (0.49, row[0]),
-            (0.51, row[1]),
-            (0.99, row[1]),
-        ] {
-            assert_eq!(
-                body(&picture, across, up),
-                colour,
-                "{angle} deg, {up} of the height"
-            );
+        for (up, colour) in [(0.01, row[0]), (0.49, row[0]), (0.51, row[1]), (0.99, row[1])] {
+            assert_eq!(body(&picture, across, up), colour, "{angle} deg, {up} of the height");
         }
     }
 }
@@ -56,14 +47,7 @@ fn codes_and_counts_have_pictures() {
     let scene = scene(9, 7, None, None);
     for name in ["status", "newton_steps", "regime"] {
         let picture = draw(&scene, &[panel(&scene, 0)], Some(name));
-        assert!(
-            colours(&picture)
-                .values()
-                .filter(|pixels| **pixels > 5000)
-                .count()
-                >= 3,
-            "{name}"
-        );
+        assert!(colours(&picture).values().filter(|pixels| **pixels > 5000).count() >= 3, "{name}");
     }
 }
 

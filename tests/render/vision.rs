@@ -3,10 +3,7 @@
 /// What is left of linear red, green and blue without one kind of cones: Machado, Oliveira and Fernandes 2009, "A
 /// physiologically-based model for simulation of color vision deficiency", table 1 at severity 1.0.
 pub const VISIONS: [(&str, [[f64; 3]; 3]); 4] = [
-    (
-        "all cones",
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-    ),
+    ("all cones", [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
     (
         "protan",
         [
@@ -37,11 +34,7 @@ pub const VISIONS: [(&str, [[f64; 3]; 3]); 4] = [
 pub fn lab(rgb: [u8; 3], vision: [[f64; 3]; 3]) -> [f64; 3] {
     let linear = rgb.map(|channel| {
         let value = f64::from(channel) / 255.0;
-        if value <= 0.04045 {
-            value / 12.92
-        } else {
-            ((value + 0.055) / 1.055).powf(2.4)
-        }
+        if value <= 0.04045 { value / 12.92 } else { ((value + 0.055) / 1.055).powf(2.4) }
     });
     let times = |matrix: [[f64; 3]; 3], of: [f64; 3]| {
         matrix.map(|row| row.iter().zip(of).map(|(part, value)| part * value).sum())
@@ -56,11 +49,7 @@ pub fn lab(rgb: [u8; 3], vision: [[f64; 3]; 3]) -> [f64; 3] {
         seen,
     );
     let root = |value: f64| {
-        if value > 216.0 / 24389.0 {
-            value.cbrt()
-        } else {
-            (24389.0 / 27.0 * value + 16.0) / 116.0
-        }
+        if value > 216.0 / 24389.0 { value.cbrt() } else { (24389.0 / 27.0 * value + 16.0) / 116.0 }
     };
     let [x, y, z] = [root(xyz[0] / 0.95047), root(xyz[1]), root(xyz[2] / 1.08883)];
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]

@@ -20,11 +20,7 @@ radius_mm = 0.25
 push_angle_deg = [-10, 10]
 distance_mm = [3, 12]
 {lines}",
-        if lines.contains("taper") {
-            ""
-        } else {
-            "tip_radius_um = 3\n"
-        },
+        if lines.contains("taper") { "" } else { "tip_radius_um = 3\n" },
     ))
 }
 
@@ -39,11 +35,7 @@ fn every_axis_takes_the_place_of_its_number() {
         ("vertex_mm", Parameter::VertexMm, [-2.0, 3.0]),
         ("pole_radius_mm", Parameter::PoleRadiusMm, [0.0, 1.0]),
         ("friction", Parameter::Friction, [0.0, 0.5]),
-        (
-            "modulus_tip_to_base",
-            Parameter::ModulusTipToBase,
-            [0.5, 2.0],
-        ),
+        ("modulus_tip_to_base", Parameter::ModulusTipToBase, [0.5, 2.0]),
         ("arc_stretch", Parameter::ArcStretch, [1.0, 1.05]),
     ] {
         let scene = swept(&format!("{axis} = {values:?}")).unwrap();
@@ -53,11 +45,7 @@ fn every_axis_takes_the_place_of_its_number() {
         for (swept, value) in scene.whiskers().flatten().zip(values) {
             let place: Vec<f64> = swept.place.values().map(|(_, value)| value).collect();
             assert_eq!(place, [value], "{axis}");
-            let value = if axis == "taper" {
-                30.0 * (1.0 - value)
-            } else {
-                value
-            };
+            let value = if axis == "taper" { 30.0 * (1.0 - value) } else { value };
             let alone = plain.with(parameter, value).unwrap();
             assert_eq!(swept.whisker, alone.first_whisker().whisker, "{axis}");
             assert_eq!(swept.pole, alone.pole, "{axis}");
@@ -70,16 +58,8 @@ fn every_axis_takes_the_place_of_its_number() {
 fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
     let lines = "friction = [0, 0.5]\npole_radius_mm = [0.1, 0.2]\ntaper = [0.5]\ncurvature_per_mm = [0, 0.01, 0.02]";
     let scene = swept(lines).unwrap();
-    let names: Vec<_> = scene
-        .grid
-        .sweep
-        .iter()
-        .map(|axis| axis.variable.name())
-        .collect();
-    assert_eq!(
-        names,
-        ["friction", "pole_radius_mm", "taper", "curvature_per_mm"]
-    );
+    let names: Vec<_> = scene.grid.sweep.iter().map(|axis| axis.variable.name()).collect();
+    assert_eq!(names, ["friction", "pole_radius_mm", "taper", "curvature_per_mm"]);
     assert_eq!(scene.whisker_count(), 12);
     let seen: Vec<(f64, f64)> = scene
         .whiskers()
@@ -87,14 +67,7 @@ fn axes_are_in_the_order_of_the_file_and_the_first_varies_fastest() {
         .map(|swept| (swept.pole.friction, swept.pole.radius_mm))
         .collect();
     assert_eq!(seen[..4], [(0.0, 0.1), (0.5, 0.1), (0.0, 0.2), (0.5, 0.2)]);
-    assert_eq!(
-        scene
-            .whisker(11)
-            .unwrap()
-            .place
-            .value(Parameter::ParabolaPerMm),
-        Some(0.02)
-    );
+    assert_eq!(scene.whisker(11).unwrap().place.value(Parameter::ParabolaPerMm), Some(0.02));
 
     // An axis may be a list, a table in one line, keys with dots, or a table.
     let lines = "pole_radius_mm.from = 0.1\npole_radius_mm.count = 1\nfriction = { from = 0, count = 1 }\n\
@@ -120,10 +93,7 @@ fn a_logarithmic_range_has_equal_ratios() {
     assert_eq!((values[0], values[4]), (0.01, 1.0));
     for pair in values.windows(2) {
         // Rounding of a power and a product.
-        assert!(
-            (pair[1] / pair[0] / 10_f64.sqrt() - 1.0).abs() < 1e-15,
-            "{values:?}"
-        );
+        assert!((pair[1] / pair[0] / 10_f64.sqrt() - 1.0).abs() < 1e-15, "{values:?}");
     }
     let linear = swept("friction = { from = 0, to = 1, count = 5, scale = 'linear' }").unwrap();
     assert_eq!(linear.grid.sweep[0].values, [0.0, 0.25, 0.5, 0.75, 1.0]);
@@ -162,10 +132,7 @@ fn every_combination_must_be_a_whisker() {
             "pole_radius_mm = [0.1, 3]",
             "less than the smallest distance (3); refused is pole_radius_mm = 3",
         ),
-        (
-            "pole_radius_mm = [-0.1, 2]",
-            "grid.pole_radius_mm[0] = -0.1: must be between 0 and",
-        ),
+        ("pole_radius_mm = [-0.1, 2]", "grid.pole_radius_mm[0] = -0.1: must be between 0 and"),
         (
             "vertex_mm = [0, 80]",
             "grid.vertex_mm: must be at least -10 * length_mm (-200) and less than sqrt(2)",
@@ -190,10 +157,7 @@ fn every_combination_must_be_a_whisker() {
             "taper = [0.1, 0.2]\ntip_radius_um = [1, 2]",
             "grid.tip_radius_um: must be left out: grid.taper gives",
         ),
-        (
-            "youngs_modulus_gpa = [1, 2]",
-            "unknown field `youngs_modulus_gpa`",
-        ),
+        ("youngs_modulus_gpa = [1, 2]", "unknown field `youngs_modulus_gpa`"),
     ] {
         let why = swept(lines).unwrap_err();
         assert!(why.contains(said), "{lines}\n{why}");
@@ -202,15 +166,7 @@ fn every_combination_must_be_a_whisker() {
                     [grid]\npush_angle_deg = [1]\ndistance_mm = [3]\n";
     for axis in ["length_mm", "base_radius_um", "tip_radius_um"] {
         let why = parse(&format!("{measured}{axis} = [1, 2]")).unwrap_err();
-        assert!(
-            why.contains(&format!("grid.{axis}: must be left out")),
-            "{why}"
-        );
+        assert!(why.contains(&format!("grid.{axis}: must be left out")), "{why}");
     }
-    assert!(
-        parse(&format!(
-            "{measured}friction = [0, 1]\npole_radius_mm = [0, 1]"
-        ))
-        .is_ok()
-    );
+    assert!(parse(&format!("{measured}friction = [0, 1]\npole_radius_mm = [0, 1]")).is_ok());
 }

@@ -15,10 +15,7 @@ fn a_changed_scene_is_checked_like_its_file() {
     let base = parse(BASE).unwrap();
     let rough = base.with(Parameter::Friction, 0.4).unwrap();
     assert_eq!(rough.pole.friction, 0.4);
-    assert_eq!(
-        (&rough.whisker, &rough.grid, &rough.name),
-        (&base.whisker, &base.grid, &base.name)
-    );
+    assert_eq!((&rough.whisker, &rough.grid, &rough.name), (&base.whisker, &base.grid, &base.name));
     let exact = [0.1 + 0.2, 1e-7_f64.mul_add(1.0, 17.0)];
     let listed = base.to_builder().distance_mm(exact).build().unwrap();
     assert_eq!(listed.grid.distance_mm, exact);
@@ -33,8 +30,7 @@ fn a_changed_scene_is_checked_like_its_file() {
             "error: whisker.length_mm = NaN: must be between 0.001 and 100000",
         ),
         (
-            base.to_builder()
-                .push_angle_deg(AxisValues::linear(5.0, 1.0, 3)),
+            base.to_builder().push_angle_deg(AxisValues::linear(5.0, 1.0, 3)),
             "error: grid.push_angle_deg.to = 1: must be greater than from (5)",
         ),
         (
@@ -49,18 +45,12 @@ fn a_changed_scene_is_checked_like_its_file() {
             base.to_builder().sweep(Parameter::YoungsModulusGpa, [1.0]),
             "error: grid.youngs_modulus_gpa: must be left out: no axis varies it",
         ),
-        (
-            Scene::builder("empty"),
-            "error: whisker.length_mm: is left out",
-        ),
+        (Scene::builder("empty"), "error: whisker.length_mm: is left out"),
         (
             base.to_builder().set(Parameter::Taper, 1.5),
             "error: taper = 1.5: must be between 0 and 1",
         ),
-        (
-            base.to_builder().title("two\nlines"),
-            "error: title: must be one line of text",
-        ),
+        (base.to_builder().title("two\nlines"), "error: title: must be one line of text"),
     ] {
         let why = why(builder);
         assert!(why.starts_with(said), "{why}");
@@ -73,10 +63,7 @@ fn a_scene_survives_its_own_text() {
     let all = "[whisker.modulus_gradient]\ntip_to_base = 1.3\n[contact]\nfriction = 0.1\n\
                [uncertainty]\ntaper = 0.01\nlength_mm = 0.3\n";
     let full = parse(&format!("{}{all}", sweep())).unwrap_err();
-    assert!(
-        full.contains("does not give whisker.tip_radius_um"),
-        "{full}"
-    );
+    assert!(full.contains("does not give whisker.tip_radius_um"), "{full}");
     let full = parse(&format!("{BASE}{all}")).unwrap();
     let shipped = shipped::scenes().into_iter();
     for scene in shipped.chain([full, parse(&sweep()).unwrap()]) {
@@ -84,18 +71,10 @@ fn a_scene_survives_its_own_text() {
         let built = scene.to_builder().build().unwrap();
         let again = Scene::parse(&built.to_toml(), &format!("{}.toml", built.name)).unwrap();
         assert_eq!(*again, *built, "{}", built.to_toml());
-        let data = SceneData {
-            text: built.text.clone(),
-            ..SceneData::clone(&scene)
-        };
+        let data = SceneData { text: built.text.clone(), ..SceneData::clone(&scene) };
         assert_eq!(data, *built);
     }
-    let log = AxisValues::Range {
-        from: 1e-7,
-        to: Some(0.2),
-        count: 7,
-        scale: AxisScale::Log,
-    };
+    let log = AxisValues::Range { from: 1e-7, to: Some(0.2), count: 7, scale: AxisScale::Log };
     let rough = cone().to_builder().sweep(Parameter::Friction, log);
     let rough = rough.build().unwrap();
     assert_eq!(parse(&rough.to_toml()).unwrap().grid, rough.grid);
@@ -109,12 +88,7 @@ fn parameters_are_read_and_replaced() {
             continue;
         };
         let same = scene.with(parameter, current).unwrap();
-        assert_eq!(
-            parameter.value(&same),
-            Some(current),
-            "{}",
-            parameter.name()
-        );
+        assert_eq!(parameter.value(&same), Some(current), "{}", parameter.name());
         let [least, most] = parameter.range(&scene);
         assert!(least <= current && current <= most, "{}", parameter.name());
         let accepts = |value| scene.with(parameter, value).is_ok();
@@ -178,9 +152,7 @@ fn rewritten_text_keeps_the_comments() {
     assert_eq!(rough.pole.friction, 0.25);
     let read = Scene::parse(&text, "cone.toml").unwrap();
     assert_eq!((&read.whisker, read.pole), (&rough.whisker, rough.pole));
-    let expected = scene
-        .to_toml()
-        .replace("tip_radius_um = 1.5 ", "tip_radius_um = 4.0 ");
+    let expected = scene.to_toml().replace("tip_radius_um = 1.5 ", "tip_radius_um = 4.0 ");
     assert!(text.starts_with(&expected), "{text}");
     let tapered = scene.to_toml_with(&[(Parameter::Taper, 0.5)]).unwrap();
     assert!(tapered.contains("tip_radius_um = 15.0 "), "{tapered}");

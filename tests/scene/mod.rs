@@ -1,9 +1,5 @@
 //! Shipped scenes are accepted. Wrong scenes are refused with the place, the value and what is allowed. No text panics.
-#![allow(
-    clippy::unwrap_used,
-    clippy::expect_used,
-    reason = "a test that cannot go on has failed"
-)]
+#![allow(clippy::unwrap_used, clippy::expect_used, reason = "a test that cannot go on has failed")]
 
 mod any_text;
 mod axes;
@@ -47,8 +43,7 @@ fn parse(text: &str) -> Result<Scene, String> {
 
 /// The base scene with an axis of tapers, which give the tip its radius.
 fn sweep() -> String {
-    BASE.replace("tip_radius_um", "# tip_radius_um")
-        .replace("# taper", "taper")
+    BASE.replace("tip_radius_um", "# tip_radius_um").replace("# taper", "taper")
 }
 
 /// The base scene with one line replaced by others.
@@ -116,24 +111,15 @@ fn every_value_arrives_where_it_belongs() {
     assert_eq!(scene.grid.push_angle_deg, [-70.0, -35.0, 0.0, 35.0, 70.0]);
     assert_eq!(scene.grid.distance_mm, [2.0, 7.5, 20.0]);
     assert_eq!(scene.grid.axis(Parameter::Taper), None);
-    assert_eq!(
-        scene.grid.axis(Parameter::ParabolaPerMm),
-        Some(&[0.0, 0.04][..])
-    );
+    assert_eq!(scene.grid.axis(Parameter::ParabolaPerMm), Some(&[0.0, 0.04][..]));
     let swept = parse(&sweep()).unwrap();
-    assert_eq!(
-        swept.grid.axis(Parameter::Taper),
-        Some(&[0.0, 0.5, 1.0][..])
-    );
+    assert_eq!(swept.grid.axis(Parameter::Taper), Some(&[0.0, 0.5, 1.0][..]));
     // The first of the axis.
     assert_eq!(swept.whisker.tip_radius_um, 30.0);
 }
 
 fn curvature(parabola_per_mm: f64, vertex_mm: f64) -> Option<Curvature> {
-    Some(Curvature {
-        parabola_per_mm,
-        vertex_mm,
-    })
+    Some(Curvature { parabola_per_mm, vertex_mm })
 }
 
 #[test]
@@ -152,10 +138,7 @@ fn what_may_be_left_out_may_be_left_out() {
     let whiskers: Vec<_> = scene.whiskers().flatten().collect();
     assert_eq!(whiskers.len(), 1);
     assert_eq!(whiskers[0].place.values().count(), 0);
-    assert_eq!(
-        (&whiskers[0].whisker, whiskers[0].pole),
-        (&scene.whisker, scene.pole)
-    );
+    assert_eq!((&whiskers[0].whisker, whiskers[0].pole), (&scene.whisker, scene.pole));
     assert!(!scene.is_sweep());
 }
 
@@ -163,30 +146,17 @@ fn what_may_be_left_out_may_be_left_out() {
 fn a_parabola_of_zero_is_straight_but_lends_its_vertex_to_an_axis() {
     let own_zero = with_line(8, "parabola_per_mm = 0");
     let scene = parse(&own_zero).unwrap();
-    let curvatures: Vec<_> = scene
-        .whiskers()
-        .flatten()
-        .map(|swept| swept.whisker.curvature)
-        .collect();
+    let curvatures: Vec<_> =
+        scene.whiskers().flatten().map(|swept| swept.whisker.curvature).collect();
     assert_eq!(curvatures, [curvature(0.0, 2.5), curvature(0.04, 2.5)]);
     assert_eq!(
-        scene
-            .whiskers()
-            .flatten()
-            .next()
-            .unwrap()
-            .whisker
-            .rod(&scene.pole, Side::Cb)
-            .bend,
+        scene.whiskers().flatten().next().unwrap().whisker.rod(&scene.pole, Side::Cb).bend,
         0.0
     );
 
     let no_axis = own_zero.replace("curvature_per_mm = [0, 0.04]", "");
     // The derivative by the curvature depends on the vertex.
-    assert_eq!(
-        parse(&no_axis).unwrap().whisker.curvature,
-        curvature(0.0, 2.5)
-    );
+    assert_eq!(parse(&no_axis).unwrap().whisker.curvature, curvature(0.0, 2.5));
     let at_base = no_axis.replace("vertex_mm = 2.5", "vertex_mm = 0");
     assert_eq!(parse(&at_base).unwrap().whisker.curvature, None);
 }
@@ -218,13 +188,7 @@ fn whiskers_come_in_atlas_order_taper_first() {
     for size in [1, 4, 6, 7] {
         let groups: Vec<_> = scene.whisker_groups(size).collect();
         assert!(groups.iter().rev().skip(1).all(|group| group.len() == size));
-        assert!(
-            groups
-                .concat()
-                .into_iter()
-                .flatten()
-                .eq(all.iter().cloned())
-        );
+        assert!(groups.concat().into_iter().flatten().eq(all.iter().cloned()));
     }
     assert_eq!(scene.whisker_count(), all.len());
     assert_eq!(scene.first_whisker(), all[0]);
@@ -235,9 +199,7 @@ fn whiskers_come_in_atlas_order_taper_first() {
 fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
     let chord = |a: f64, v: f64, x: f64| x.hypot(a * ((x - v).powi(2) - v * v));
     let grows = |a: f64, v: f64| {
-        let chords: Vec<f64> = (0..100_000)
-            .map(|i| chord(a, v, f64::from(i) * 1e-3))
-            .collect();
+        let chords: Vec<f64> = (0..100_000).map(|i| chord(a, v, f64::from(i) * 1e-3)).collect();
         chords.is_sorted_by(|near, far| near < far)
     };
     let accepted = |a: f64, v: f64| {
@@ -245,19 +207,8 @@ fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
         let text = text.replace("per_mm = 0.02", &format!("per_mm = {a}"));
         parse(&text.replace("vertex_mm = 2.5", &format!("vertex_mm = {v}"))).is_ok()
     };
-    for (a, v) in [
-        (0.05, 28.2),
-        (0.05, 28.4),
-        (0.1, 14.1),
-        (0.1, 14.2),
-        (0.1, -30.0),
-        (0.5, 2.9),
-    ] {
-        assert_eq!(
-            accepted(a, v),
-            grows(a, v),
-            "A = {a} per mm, vertex at {v} mm"
-        );
+    for (a, v) in [(0.05, 28.2), (0.05, 28.4), (0.1, 14.1), (0.1, 14.2), (0.1, -30.0), (0.5, 2.9)] {
+        assert_eq!(accepted(a, v), grows(a, v), "A = {a} per mm, vertex at {v} mm");
     }
 }
 
@@ -265,12 +216,7 @@ fn the_chord_grows_along_the_whisker_up_to_the_last_vertex_allowed() {
 fn few_values_stay_and_many_are_represented() {
     let scene = parse(&sweep()).unwrap();
     let pushes: Vec<f64> = (0..16).map(f64::from).collect();
-    let thinned = scene
-        .to_builder()
-        .push_angle_deg(pushes)
-        .build()
-        .unwrap()
-        .thinned(2, 1);
+    let thinned = scene.to_builder().push_angle_deg(pushes).build().unwrap().thinned(2, 1);
     assert_eq!(thinned.grid.push_angle_deg, [4.0, 12.0]);
     assert_eq!(thinned.grid.distance_mm, [2.0, 20.0]);
     assert_eq!(thinned.grid.axis(Parameter::Taper), Some(&[0.5][..]));

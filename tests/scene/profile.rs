@@ -18,12 +18,7 @@ fn radii_are_read_from_the_scene_and_from_a_file() {
     let listed = parse(&scene(ROWS, "")).unwrap();
     let whisker = &listed.whisker;
     assert_eq!((whisker.base_radius_um, whisker.tip_radius_um), (30.0, 1.5));
-    let rows = [
-        [0.0, 1.0],
-        [0.25, 31.0 / 30.0],
-        [0.625, 1.0 / 3.0],
-        [1.0, 0.05],
-    ];
+    let rows = [[0.0, 1.0], [0.25, 31.0 / 30.0], [0.625, 1.0 / 3.0], [1.0, 0.05]];
     assert_eq!(whisker.profile.as_deref(), Some(&rows[..]));
 
     let folder = tempfile::tempdir().unwrap();
@@ -49,46 +44,22 @@ fn radii_that_are_refused() {
         ),
         ("5", "expected the name of a CSV file or a list"),
         ("[]", "must be 2 to 256 rows, are 0"),
-        (
-            "[[0, 30], [20]]",
-            "invalid length 1, expected a list of 2 numbers",
-        ),
-        (
-            "[[0, 30, 1], [20, 1]]",
-            "invalid length 3, expected a list of 2 numbers",
-        ),
+        ("[[0, 30], [20]]", "invalid length 1, expected a list of 2 numbers"),
+        ("[[0, 30, 1], [20, 1]]", "invalid length 3, expected a list of 2 numbers"),
         ("[[0, 30], [20, \"thin\"]]", "expected a number"),
         ("[[0, 30], [20, 0]]", "rows[1]: the radius must be between"),
-        (
-            "[[0, 30], [20, nan]]",
-            "rows[1]: the radius must be between",
-        ),
-        (
-            "[[0, 30], [0, 20], [20, 1]]",
-            "rows[1]: the arclength must grow",
-        ),
-        (
-            "[[0, 30], [nan, 20], [20, 1]]",
-            "rows[1]: the arclength must grow",
-        ),
+        ("[[0, 30], [20, nan]]", "rows[1]: the radius must be between"),
+        ("[[0, 30], [0, 20], [20, 1]]", "rows[1]: the arclength must grow"),
+        ("[[0, 30], [nan, 20], [20, 1]]", "rows[1]: the arclength must grow"),
         ("[[0, 30], [21, 1]]", "rows[1]: the arclength must grow"),
-        (
-            "[[0, 30], [1e-200, 20], [20, 1]]",
-            "rows[1]: must be farther from the row before it",
-        ),
-        (
-            "[[1, 30], [20, 1]]",
-            "must begin at the base, at 0, and end at length_mm",
-        ),
+        ("[[0, 30], [1e-200, 20], [20, 1]]", "rows[1]: must be farther from the row before it"),
+        ("[[1, 30], [20, 1]]", "must begin at the base, at 0, and end at length_mm"),
         ("[[0, 30], [19, 1]]", "end at length_mm (20)"),
         (
             "[[0, 30], [20, 31]]",
             "the radius at the tip must be at most that at the base (30), is 31",
         ),
-        (
-            "[[0, 30], [20, 0.02]]",
-            "rows[1]: the radius must be between a thousandth",
-        ),
+        ("[[0, 30], [20, 0.02]]", "rows[1]: the radius must be between a thousandth"),
         (
             "[[0, 30], [2, 29], [3, 2], [4, 28], [20, 1]]",
             "rows[2]: the radius must be at least 7 um, is 2: a waist is at most four times as thin",
@@ -101,10 +72,7 @@ fn radii_that_are_refused() {
             "[[0, 30], [5, 12], [6, 2.9], [7, 11], [8, 12], [20, 1]]",
             "rows[2]: the radius must be at least 3 um",
         ),
-        (
-            "[[0, 1], [5, 0.0009], [20, 1]]",
-            "rows[1]: the radius must be",
-        ),
+        ("[[0, 1], [5, 0.0009], [20, 1]]", "rows[1]: the radius must be"),
     ] {
         let message = refusal(&scene(&format!("[whisker.profile]\nrows = {rows}"), ""));
         assert!(message.contains(why), "{rows}: {message}");
@@ -156,23 +124,14 @@ fn a_bad_csv_file_is_named_with_its_line() {
             "arc_length_mm,radius_um\n0,30\n20,0.001\n",
             "line 3: the radius must be between a thousandth",
         ),
-        (
-            "arc_length_mm,radius_um\n0,30\n21,1\n",
-            "line 3: the arclength",
-        ),
+        ("arc_length_mm,radius_um\n0,30\n21,1\n", "line 3: the arclength"),
         ("", "radii.csv: has no rows"),
-        (
-            "arc_length_mm,radius_um\n0,30\n",
-            "must be 2 to 256 rows, are 1",
-        ),
+        ("arc_length_mm,radius_um\n0,30\n", "must be 2 to 256 rows, are 1"),
         (
             "arc_length_mm,radius_um\n0,30\n# a slip\n3,2\n4,30\n20,1\n",
             "line 4: the radius must be at least 7.5 um",
         ),
-        (
-            &format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)),
-            "are more",
-        ),
+        (&format!("arc_length_mm,radius_um\n{}", "0,1\n".repeat(300)), "are more"),
     ] {
         fs::write(folder.path().join("radii.csv"), csv).unwrap();
         let message = Scene::read(&path).unwrap_err().to_string();
@@ -194,23 +153,14 @@ fn a_bad_csv_file_is_named_with_its_line() {
     assert!(note.ends_with(wanted), "{note}");
 
     // What is wrong elsewhere is shown where the scene's own text has it.
-    fs::write(
-        folder.path().join("radii.csv"),
-        "arc_length_mm,radius_um\n0,30\n5,20\n20,1\n",
-    )
-    .unwrap();
+    fs::write(folder.path().join("radii.csv"), "arc_length_mm,radius_um\n0,30\n5,20\n20,1\n")
+        .unwrap();
     let text = fs::read_to_string(&path).unwrap();
     let text = text.replace("radius_mm = 0.25", "radius_mm = -1");
     fs::write(&path, &text).unwrap();
-    let line = 1 + text
-        .lines()
-        .position(|l| l.starts_with("radius_mm"))
-        .unwrap();
+    let line = 1 + text.lines().position(|l| l.starts_with("radius_mm")).unwrap();
     let message = Scene::read(&path).unwrap_err().to_string();
-    assert!(
-        message.contains(&format!("scene.toml:{line}:")),
-        "{message}"
-    );
+    assert!(message.contains(&format!("scene.toml:{line}:")), "{message}");
 }
 
 /// A map or a store brings its scene along: checking its text opens no file, even one that is there.
@@ -260,10 +210,7 @@ fn a_scaled_and_continued_profile_is_the_whole_cone() {
     for ((one, other), thin) in ends[0].iter().zip(&ends[1]).zip(&thin) {
         let push = |end: &Detachment| end.push_angle_deg.unwrap();
         assert!((push(one) - push(other)).abs() < 1e-8, "{one:?} {other:?}");
-        assert!(
-            (push(thin) - push(other)).abs() < 1e-12,
-            "{thin:?} {other:?}"
-        );
+        assert!((push(thin) - push(other)).abs() < 1e-12, "{thin:?} {other:?}");
         let ratios = [one, thin].map(|end| end.force_un.unwrap() / other.force_un.unwrap());
         assert!(
             (ratios[0] - 1.0).abs() < 1e-6 && (ratios[1] - 1.0 / 16.0).abs() < 1e-12,
@@ -302,23 +249,14 @@ fn a_cone_beyond_the_rows_has_limits() {
             "[whisker.profile]\nrows = [[0, 30], [20, 2]]\nprofile_scale = 0",
             "whisker.profile.profile_scale = 0: must be between 0.001 and 1000",
         ),
-        (
-            "base_radius_um = 30\ntip_radius_um = 1.5\nprofile.profile_scale = 2",
-            "rows",
-        ),
+        ("base_radius_um = 30\ntip_radius_um = 1.5\nprofile.profile_scale = 2", "rows"),
     ] {
         let message = refusal(&scene(profile, ""));
         assert!(message.contains(must), "{message}");
     }
     let bare = parse(&scene("base_radius_um = 30\ntip_radius_um = 1.5", "")).unwrap();
-    let why = bare
-        .with(Parameter::TipExtensionMm, 1.0)
-        .unwrap_err()
-        .to_string();
-    assert!(
-        why.contains("must be left out: there are no whisker.profile.rows"),
-        "{why}"
-    );
+    let why = bare.with(Parameter::TipExtensionMm, 1.0).unwrap_err().to_string();
+    assert!(why.contains("must be left out: there are no whisker.profile.rows"), "{why}");
 }
 
 /// Rows every 0.5 mm of the cone of the base scene, with errors of this standard deviation in um.
@@ -340,10 +278,7 @@ fn smooth_radii_replace_the_measured_ones() {
     let rows = noisy_cone(0.3, 1);
     let smoothed_scene = parse(&smoothed(&rows, "smooth = true")).unwrap();
     let fit = smoothed_scene.smooth_radii().unwrap();
-    assert_eq!(
-        (fit.degree, smoothed_scene.measured_rows()),
-        (1, Some(&rows[..]))
-    );
+    assert_eq!((fit.degree, smoothed_scene.measured_rows()), (1, Some(&rows[..])));
     assert!((0.2..0.4).contains(&fit.rms_um), "{fit:?}");
     // The least squares of a straight line, by the normal equations.
     let count = rows.len() as f64;
@@ -358,27 +293,14 @@ fn smooth_radii_replace_the_measured_ones() {
     assert!((smoothed_scene.whisker.tip_radius_um - line(20.0)).abs() < 1e-12);
 
     // What is kept with a map is smoothed again, to the same bits; a scene of numbers keeps the key, too.
-    assert_eq!(
-        parse(&smoothed_scene.to_toml()).unwrap().whisker,
-        smoothed_scene.whisker
-    );
+    assert_eq!(parse(&smoothed_scene.to_toml()).unwrap().whisker, smoothed_scene.whisker);
     let built = smoothed_scene.to_builder().build().unwrap();
     assert!(built.to_toml().contains("smooth = true"));
-    assert_eq!(
-        parse(&built.to_toml()).unwrap().whisker,
-        smoothed_scene.whisker
-    );
-    let rough = smoothed_scene
-        .to_builder()
-        .smooth_profile(false)
-        .build()
-        .unwrap();
+    assert_eq!(parse(&built.to_toml()).unwrap().whisker, smoothed_scene.whisker);
+    let rough = smoothed_scene.to_builder().smooth_profile(false).build().unwrap();
     let plain = parse(&smoothed(&rows, "smooth = false")).unwrap();
     assert_eq!(rough.whisker, plain.whisker);
-    assert_eq!(
-        (rough.smooth_radii(), rough.whisker.tip_radius_um),
-        (None, rows[40][1])
-    );
+    assert_eq!((rough.smooth_radii(), rough.whisker.tip_radius_um), (None, rows[40][1]));
 }
 
 /// Smoothed radii are sums of the measured ones with the derivatives as weights, and an exact polynomial comes back with its degree.
@@ -399,10 +321,7 @@ fn smooth_radii_are_linear_in_the_measured_ones() {
     for (sum, [_, radius]) in sums.iter().zip(&smooth.rows) {
         assert!((sum - radius).abs() < 1e-11, "{sum} {radius}");
     }
-    let exact: Vec<[f64; 2]> = rows
-        .iter()
-        .map(|[s, _]| [*s, 30.0 - s - 0.02 * s * s])
-        .collect();
+    let exact: Vec<[f64; 2]> = rows.iter().map(|[s, _]| [*s, 30.0 - s - 0.02 * s * s]).collect();
     let smooth = fit(&exact);
     assert_eq!(smooth.degree, 2);
     assert!(smooth.rms_um < 1e-12, "{smooth:?}");
@@ -415,10 +334,7 @@ fn smooth_radii_give_the_detachments_of_the_whisker() {
     let ends = |text: &str| {
         let scene = parse(text).unwrap();
         let ends = Side::BOTH.map(|side| curve(&scene.whisker, &scene.pole, side, &distances));
-        let angles = ends
-            .into_iter()
-            .flatten()
-            .map(|end| end.push_angle_deg.unwrap());
+        let angles = ends.into_iter().flatten().map(|end| end.push_angle_deg.unwrap());
         angles.collect::<Vec<f64>>()
     };
     let exact = ends(&smoothed(&noisy_cone(0.0, 0), ""));

@@ -21,10 +21,7 @@ fn a_bad_value_is_named_with_its_place_and_what_is_allowed() {
         for part in parts.iter().copied().chain([&*place, "error: "]) {
             assert!(message.contains(part), "{case}\nno {part:?} in:\n{message}");
         }
-        assert!(
-            !parts.is_empty() && !message.contains('\u{1b}'),
-            "{message}"
-        );
+        assert!(!parts.is_empty() && !message.contains('\u{1b}'), "{message}");
     }
 }
 
@@ -58,10 +55,7 @@ fn a_taper_axis_gives_the_tip_its_radius() {
     let both = BASE.replace("# taper", "taper");
     let why = parse(&both).unwrap_err();
     let said = "whisker.tip_radius_um = 1.5: must be left out: grid.taper gives every whisker of the sweep its tip";
-    assert!(
-        why.contains(said) && why.contains("test.toml:5:17"),
-        "{why}"
-    );
+    assert!(why.contains(said) && why.contains("test.toml:5:17"), "{why}");
     assert!(parse(&sweep()).is_ok());
     let neither = sweep().replace("taper =", "# taper =");
     let why = parse(&neither).unwrap_err();
@@ -73,26 +67,16 @@ fn a_taper_axis_gives_the_tip_its_radius() {
 fn values_at_odds_with_each_other_are_refused() {
     // The axis' largest coefficient, 0.04, decides; not the whisker's own 0.02.
     let base = BASE.replace("distance_mm = [2.0,", "distance_mm = [");
-    let bulky = base
-        .replace("radius_mm = 0.25", "radius_mm = 6")
-        .replace("0.04]", "0.1]");
+    let bulky = base.replace("radius_mm = 0.25", "radius_mm = 6").replace("0.04]", "0.1]");
     let why = parse(&bulky).unwrap_err();
     let sharpest = "pole.radius_mm = 6: must be at least 0 and less than the whisker's smallest radius of curvature (5)";
     assert!(why.contains(sharpest), "{why}");
     let slim = bulky.replace("curvature_per_mm = [0, 0.1]", "");
-    assert!(
-        parse(&slim).is_ok(),
-        "the whisker's own coefficient allows 25 mm"
-    );
+    assert!(parse(&slim).is_ok(), "the whisker's own coefficient allows 25 mm");
 
-    let far = BASE
-        .replace("vertex_mm = 2.5", "vertex_mm = 30")
-        .replace("0.04]", "0.05]");
+    let far = BASE.replace("vertex_mm = 2.5", "vertex_mm = 30").replace("0.04]", "0.05]");
     let why = parse(&far).unwrap_err();
-    assert!(
-        why.contains("vertex_mm = 30: must be") && why.contains("(28.28"),
-        "{why}"
-    );
+    assert!(why.contains("vertex_mm = 30: must be") && why.contains("(28.28"), "{why}");
     assert!(parse(&far.replace("curvature_per_mm = [0, 0.05]", "")).is_ok());
 
     let many = BASE
@@ -119,11 +103,7 @@ fn unreadable_files_have_different_messages() {
     };
     let none = message(&folder.path().join("none.toml"));
     assert!(none.contains(&format!("cannot be read: {}", no_file())));
-    assert!(
-        message(folder.path())
-            .to_lowercase()
-            .contains("cannot be read: is a directory")
-    );
+    assert!(message(folder.path()).to_lowercase().contains("cannot be read: is a directory"));
     assert!(message(&file("large.toml", &vec![b'#'; (1 << 20) + 1])).contains("longer than 1 MiB"));
     let latin = message(&file("latin.toml", b"title = 'x'\n# 5 \xb5m\n"));
     assert!(latin.contains("not UTF-8 text: byte 0xB5"), "{latin}");
@@ -134,16 +114,8 @@ fn unreadable_files_have_different_messages() {
         let path = file(&format!("{name}.toml"), unnamed.as_bytes());
         assert_eq!(Scene::read(&path).unwrap().name, name);
     }
-    let full = [
-        unnamed.as_bytes(),
-        b"#",
-        &vec![b'x'; (1 << 20) - unnamed.len() - 1],
-    ]
-    .concat();
-    assert!(
-        Scene::read(file("full.toml", &full)).is_ok(),
-        "1 MiB is allowed"
-    );
+    let full = [unnamed.as_bytes(), b"#", &vec![b'x'; (1 << 20) - unnamed.len() - 1]].concat();
+    assert!(Scene::read(file("full.toml", &full)).is_ok(), "1 MiB is allowed");
 }
 
 #[test]
@@ -151,10 +123,7 @@ fn a_byte_order_mark_and_windows_line_ends_do_no_harm() {
     let windows = format!("\u{feff}{}", BASE.replace('\n', "\r\n"));
     assert!(parse(&windows).is_ok());
     let why = parse(&windows.replace("tip_radius_um = 1.5", "tip_radius_um = 40")).unwrap_err();
-    assert!(
-        why.contains("test.toml:5:17") && why.contains("um = 40: must"),
-        "{why}"
-    );
+    assert!(why.contains("test.toml:5:17") && why.contains("um = 40: must"), "{why}");
 }
 
 /// Commas of texts and of unknown keys are no decimal commas, and lists with spaces are lists.
@@ -178,20 +147,11 @@ fn hints_about_commas_are_not_given_elsewhere() {
 fn long_lines_are_cut_around_the_place() {
     let long = "x".repeat(400_000);
     for (line, said) in [
-        (
-            format!("tip_radius_um = \"{long}\""),
-            "xxx\", expected a number",
-        ),
+        (format!("tip_radius_um = \"{long}\""), "xxx\", expected a number"),
         (format!("{long} = 1"), "xxx`, expected one of `length_mm`"),
         (format!("tip_radius_um = {long}"), "must be quoted"),
-        (
-            format!("tip_radius_um = 40 # {long}"),
-            "um = 40: must be between",
-        ),
-        (
-            format!("tip_radius_um = {}", "4".repeat(400_000)),
-            "overflowed",
-        ),
+        (format!("tip_radius_um = 40 # {long}"), "um = 40: must be between"),
+        (format!("tip_radius_um = {}", "4".repeat(400_000)), "overflowed"),
     ] {
         let why = parse(&with_line(5, &line)).unwrap_err();
         assert!(why.contains(said) && why.contains("test.toml:5:"), "{why}");

@@ -15,8 +15,7 @@ pub(super) fn scene(whisker: &str, curvature: &str) -> String {
     }
     let radii = |line: &&str| !line.starts_with("base_radius") && !line.starts_with("tip_radius");
     let text: Vec<&str> = text.lines().filter(radii).collect();
-    text.join("\n")
-        .replace("[pole]", &format!("{whisker}\n[pole]"))
+    text.join("\n").replace("[pole]", &format!("{whisker}\n[pole]"))
 }
 
 pub(super) fn refusal(text: &str) -> String {
@@ -25,29 +24,15 @@ pub(super) fn refusal(text: &str) -> String {
 
 #[test]
 fn a_spiral_bends_both_ways() {
-    let text = scene(
-        "",
-        "[whisker.curvature]\neuler_spiral = { per_mm = -0.05, per_mm2 = 0.004 }",
-    );
+    let text = scene("", "[whisker.curvature]\neuler_spiral = { per_mm = -0.05, per_mm2 = 0.004 }");
     let whisker = &parse(&text).unwrap().whisker;
-    let spiral = EulerSpiral {
-        per_mm: -0.05,
-        per_mm2: 0.004,
-    };
-    assert_eq!(
-        (whisker.euler_spiral, whisker.curvature),
-        (Some(spiral), None)
-    );
+    let spiral = EulerSpiral { per_mm: -0.05, per_mm2: 0.004 };
+    assert_eq!((whisker.euler_spiral, whisker.curvature), (Some(spiral), None));
     assert!((whisker.sharpest_bend_per_mm() - 0.05).abs() < 1e-15);
-    let s_shape = scene(
-        "",
-        "[whisker.curvature]\neuler_spiral = { per_mm = 0.4, per_mm2 = -0.04 }",
-    );
+    let s_shape =
+        scene("", "[whisker.curvature]\neuler_spiral = { per_mm = 0.4, per_mm2 = -0.04 }");
     assert!((parse(&s_shape).unwrap().whisker.sharpest_bend_per_mm() - 0.4).abs() < 1e-15);
-    let none = scene(
-        "",
-        "[whisker.curvature]\neuler_spiral = { per_mm = 0, per_mm2 = 0 }",
-    );
+    let none = scene("", "[whisker.curvature]\neuler_spiral = { per_mm = 0, per_mm2 = 0 }");
     assert_eq!(parse(&none).unwrap().whisker.euler_spiral, None);
 }
 
@@ -55,36 +40,15 @@ fn a_spiral_bends_both_ways() {
 fn spirals_that_are_refused() {
     for (curvature, why) in [
         ("", "must have either parabola_per_mm"),
-        (
-            "parabola_per_mm = 0.02\neuler_spiral = { per_mm = 0, per_mm2 = 0 }",
-            "must have either",
-        ),
-        (
-            "vertex_mm = 1\neuler_spiral = { per_mm = 0.1, per_mm2 = 0 }",
-            "must have either",
-        ),
+        ("parabola_per_mm = 0.02\neuler_spiral = { per_mm = 0, per_mm2 = 0 }", "must have either"),
+        ("vertex_mm = 1\neuler_spiral = { per_mm = 0.1, per_mm2 = 0 }", "must have either"),
         ("euler_spiral = { per_mm = 0.1 }", "missing field `per_mm2`"),
-        (
-            "euler_spiral = { per_mm = nan, per_mm2 = 0 }",
-            "per_mm = nan: must be between",
-        ),
-        (
-            "euler_spiral = { per_mm = 1.1, per_mm2 = 0 }",
-            "20 / length_mm (1)",
-        ),
-        (
-            "euler_spiral = { per_mm = 0.5, per_mm2 = -0.1 }",
-            "bends it by 20 / length_mm",
-        ),
+        ("euler_spiral = { per_mm = nan, per_mm2 = 0 }", "per_mm = nan: must be between"),
+        ("euler_spiral = { per_mm = 1.1, per_mm2 = 0 }", "20 / length_mm (1)"),
+        ("euler_spiral = { per_mm = 0.5, per_mm2 = -0.1 }", "bends it by 20 / length_mm"),
         // A full circle and more: the distance from the base does not grow.
-        (
-            "euler_spiral = { per_mm = 0.32, per_mm2 = 0 }",
-            "must bend the whisker less",
-        ),
-        (
-            "euler_spiral = { per_mm = 0, per_mm2 = 0.02 }",
-            "must bend the whisker less",
-        ),
+        ("euler_spiral = { per_mm = 0.32, per_mm2 = 0 }", "must bend the whisker less"),
+        ("euler_spiral = { per_mm = 0, per_mm2 = 0.02 }", "must bend the whisker less"),
     ] {
         let message = refusal(&scene("", &format!("[whisker.curvature]\n{curvature}")));
         assert!(message.contains(why), "{curvature}: {message}");
@@ -96,21 +60,13 @@ fn spirals_that_are_refused() {
     let bulky = scene("", spiral)
         .replace("radius_mm = 0.25", "radius_mm = 10")
         .replace("[2.0, 7.5, 20.0]", "[11, 20]");
-    assert!(
-        refusal(&bulky).contains("smallest radius of curvature (10)"),
-        "{}",
-        refusal(&bulky)
-    );
+    assert!(refusal(&bulky).contains("smallest radius of curvature (10)"), "{}", refusal(&bulky));
 }
 
 #[test]
 fn a_title_has_at_most_a_thousand_characters() {
     let titled = |length: usize| {
-        scene("", "").replacen(
-            "title = \"",
-            &format!("title = \"{}", "\u{b5}".repeat(length)),
-            1,
-        )
+        scene("", "").replacen("title = \"", &format!("title = \"{}", "\u{b5}".repeat(length)), 1)
     };
     let untitled = parse(&scene("", "")).unwrap().title.chars().count();
     assert_eq!(parse(&titled(1000 - untitled)).err(), None);

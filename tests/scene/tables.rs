@@ -8,30 +8,10 @@ use super::{BASE, parse, sweep, with_line};
 #[test]
 fn effects_have_their_ranges() {
     for (table, key, bad, said) in [
-        (
-            "whisker.modulus_gradient",
-            "tip_to_base",
-            "0",
-            "must be between 0.05 and 20",
-        ),
-        (
-            "whisker.modulus_gradient",
-            "tip_to_base",
-            "nan",
-            "must be between 0.05 and 20",
-        ),
-        (
-            "whisker.projection",
-            "arc_stretch",
-            "0.9",
-            "must be between 1 and",
-        ),
-        (
-            "whisker.projection",
-            "arc_stretch",
-            "2.5",
-            "must be between 1 and",
-        ),
+        ("whisker.modulus_gradient", "tip_to_base", "0", "must be between 0.05 and 20"),
+        ("whisker.modulus_gradient", "tip_to_base", "nan", "must be between 0.05 and 20"),
+        ("whisker.projection", "arc_stretch", "0.9", "must be between 1 and"),
+        ("whisker.projection", "arc_stretch", "2.5", "must be between 1 and"),
         (
             "contact",
             "friction",
@@ -53,15 +33,9 @@ fn effects_have_their_ranges() {
         assert!(unknown.contains("unknown field `more`"), "{unknown}");
     }
     // The sweep goes to a perfect cone, whose radius is 0 at the tip already.
-    let pointed = parse(&format!(
-        "{}\n[whisker.projection]\narc_stretch = 1.03\n",
-        sweep()
-    ))
-    .unwrap_err();
-    assert!(
-        pointed.contains("1 / taper, where the radius at the tip is 0 (1)"),
-        "{pointed}"
-    );
+    let pointed =
+        parse(&format!("{}\n[whisker.projection]\narc_stretch = 1.03\n", sweep())).unwrap_err();
+    assert!(pointed.contains("1 / taper, where the radius at the tip is 0 (1)"), "{pointed}");
 }
 
 #[test]
@@ -74,20 +48,14 @@ fn the_modulus_at_the_tip_of_a_drooping_whisker_has_limits() {
     };
     assert_eq!(stretched(0.5, 1.89).map(|_| ()), Ok(()));
     let soft = stretched(0.5, 1.91).unwrap_err();
-    assert!(
-        soft.contains("the modulus at the tip is 0.05 of the base's (1.9)"),
-        "{soft}"
-    );
+    assert!(soft.contains("the modulus at the tip is 0.05 of the base's (1.9)"), "{soft}");
     assert!(
         stretched(11.0, 1.89).is_ok()
             && stretched(0.05, 1.0).is_ok()
             && stretched(20.0, 1.0).is_ok()
     );
     let stiff = stretched(11.0, 1.91).unwrap_err();
-    assert!(
-        stiff.contains("the modulus at the tip is 20 times the base's (1.9)"),
-        "{stiff}"
-    );
+    assert!(stiff.contains("the modulus at the tip is 20 times the base's (1.9)"), "{stiff}");
 }
 
 /// The table of a surface, which the base scene does not have.
@@ -109,11 +77,7 @@ fn surfaces_have_their_ranges() {
             "distance_mm = 300",
             "surface.distance_mm = 300: must be between length_mm / 1000 (0.02) and 10 * length_mm (200)",
         ),
-        (
-            1,
-            "spacing_um = 0",
-            "surface.spacing_um = 0: must be between 0.001 and 100000000",
-        ),
+        (1, "spacing_um = 0", "surface.spacing_um = 0: must be between 0.001 and 100000000"),
         (1, "", "missing field `spacing_um`"),
         (
             2,
@@ -125,27 +89,11 @@ fn surfaces_have_their_ranges() {
             "length_mm = 1e9",
             "surface.length_mm = 1e9: must be between 0 and 99,999 spacings (19999.8)",
         ),
-        (
-            3,
-            "length_mm = 'long'",
-            "invalid type: string \"long\", expected a number",
-        ),
-        (
-            4,
-            "jitter = 1",
-            "surface.jitter = 1: must be at least 0 and less than 1",
-        ),
-        (
-            4,
-            "jitter = -0.1",
-            "surface.jitter = -0.1: must be at least 0 and less than 1",
-        ),
+        (3, "length_mm = 'long'", "invalid type: string \"long\", expected a number"),
+        (4, "jitter = 1", "surface.jitter = 1: must be at least 0 and less than 1"),
+        (4, "jitter = -0.1", "surface.jitter = -0.1: must be at least 0 and less than 1"),
         (5, "seed = -1", "invalid value: integer `-1`, expected u32"),
-        (
-            5,
-            "noise = 1",
-            "unknown field `noise`, expected one of `distance_mm`, `spacing_um`",
-        ),
+        (5, "noise = 1", "unknown field `noise`, expected one of `distance_mm`, `spacing_um`"),
     ] {
         let mut lines = LINES;
         lines[at] = line;
@@ -161,19 +109,8 @@ fn deviations_belong_to_numbers_of_the_scene() {
     let names = "`length_mm`, `base_radius_um`, `tip_radius_um`, `taper`";
     let measured = "profile = { rows = [[0, 30], [20, 1.5]] }";
     for (lines, place, parts) in [
-        (
-            "",
-            "19:1",
-            ["uncertainty: must have at least one of", names],
-        ),
-        (
-            "radius = 1",
-            "20:10",
-            [
-                "uncertainty.radius = 1: is not known; must be one of",
-                names,
-            ],
-        ),
+        ("", "19:1", ["uncertainty: must have at least one of", names]),
+        ("radius = 1", "20:10", ["uncertainty.radius = 1: is not known; must be one of", names]),
         (
             "pole_radius = 1",
             "20:15",
@@ -185,60 +122,34 @@ fn deviations_belong_to_numbers_of_the_scene() {
         (
             "length_mm = -1",
             "20:13",
-            [
-                "uncertainty.length_mm = -1: must be",
-                "between 0 and 100000",
-            ],
+            ["uncertainty.length_mm = -1: must be", "between 0 and 100000"],
         ),
         (
             "length_mm = nan",
             "20:13",
-            [
-                "uncertainty.length_mm = nan: must be",
-                "between 0 and 100000",
-            ],
+            ["uncertainty.length_mm = nan: must be", "between 0 and 100000"],
         ),
         (
             "length_mm = inf",
             "20:13",
-            [
-                "uncertainty.length_mm = inf: must be",
-                "between 0 and 100000",
-            ],
+            ["uncertainty.length_mm = inf: must be", "between 0 and 100000"],
         ),
-        (
-            "length_mm = '1'",
-            "20:13",
-            ["invalid type: string", "expected a number"],
-        ),
+        ("length_mm = '1'", "20:13", ["invalid type: string", "expected a number"]),
         (
             "friction = 0.1",
             "20:12",
-            [
-                "uncertainty.friction = 0.1: must be left out",
-                "contact.friction",
-            ],
+            ["uncertainty.friction = 0.1: must be left out", "contact.friction"],
         ),
-        (
-            "profile_radius_um = 1",
-            "20:21",
-            ["must be left out", "there is no whisker.profile"],
-        ),
+        ("profile_radius_um = 1", "20:21", ["must be left out", "there is no whisker.profile"]),
         (
             "contact_sd_mm = -1",
             "20:17",
-            [
-                "uncertainty.contact_sd_mm = -1: must be",
-                "between 0 and 100000",
-            ],
+            ["uncertainty.contact_sd_mm = -1: must be", "between 0 and 100000"],
         ),
         (
             "curvature_sd = 1",
             "20:16",
-            [
-                "is not known; must be one of",
-                "; did you mean `curvature_sd_per_mm`?",
-            ],
+            ["is not known; must be one of", "; did you mean `curvature_sd_per_mm`?"],
         ),
         (
             "tip_radius_um = 1\ntaper = 0.1",
@@ -252,46 +163,27 @@ fn deviations_belong_to_numbers_of_the_scene() {
         }
     }
     let why = parse(&format!("uncertainty = 5\n{BASE}")).unwrap_err();
-    assert!(
-        why.contains("invalid type: integer `5`, expected a table"),
-        "{why}"
-    );
+    assert!(why.contains("invalid type: integer `5`, expected a table"), "{why}");
     let scene = with("taper = 0.01\nlength_mm = 0").unwrap();
     let deviations = scene.uncertainty.as_ref().unwrap();
-    assert_eq!(
-        deviations.parameters,
-        [(Parameter::LengthMm, 0.0), (Parameter::Taper, 0.01)]
-    );
+    assert_eq!(deviations.parameters, [(Parameter::LengthMm, 0.0), (Parameter::Taper, 0.01)]);
     assert_eq!(deviations.profile_radius_um, None);
     let frames = "angle_sd_deg = 2\ncontact_sd_mm = 0.1\ncurvature_sd_per_mm = 1e-3";
     let scene = with(frames).unwrap();
     let deviations = scene.uncertainty.as_ref().unwrap();
-    assert_eq!(
-        deviations.frames.values(),
-        [Some(1e-3), Some(0.1), Some(2.0)]
-    );
+    assert_eq!(deviations.frames.values(), [Some(1e-3), Some(0.1), Some(2.0)]);
     let again = parse(&scene.to_toml()).unwrap();
     assert_eq!(again.uncertainty, scene.uncertainty);
 
-    let measured = BASE
-        .replace("base_radius_um = 30.0", measured)
-        .replace("tip_radius_um = 1.5", "");
+    let measured =
+        BASE.replace("base_radius_um = 30.0", measured).replace("tip_radius_um = 1.5", "");
     let with = |lines: &str| parse(&format!("{measured}[uncertainty]\n{lines}\n"));
     let scene = with("profile_radius_um = 0.5").unwrap();
-    assert_eq!(
-        scene.uncertainty.as_ref().unwrap().profile_radius_um,
-        Some(0.5)
-    );
+    assert_eq!(scene.uncertainty.as_ref().unwrap().profile_radius_um, Some(0.5));
     let why = with("length_mm = 1").unwrap_err();
-    assert!(
-        why.contains("must be left out: whisker.profile.rows end at the length"),
-        "{why}"
-    );
+    assert!(why.contains("must be left out: whisker.profile.rows end at the length"), "{why}");
     let why = with("tip_radius_um = 1").unwrap_err();
-    assert!(
-        why.contains("the scene does not give whisker.tip_radius_um"),
-        "{why}"
-    );
+    assert!(why.contains("the scene does not give whisker.tip_radius_um"), "{why}");
 }
 
 /// The key `whisker.taper` gives the tip its radius. A scene written with other radii keeps the key, and is the same scene when it is read.
@@ -309,16 +201,10 @@ fn a_taper_takes_the_place_of_the_radius_at_the_tip() {
     ] {
         let changed = tapered.with_parameters(changes).unwrap();
         let written = tapered.to_toml_with(changes).unwrap();
-        assert!(
-            written.contains("# of a rat") && !written.contains("tip_radius_um"),
-            "{written}"
-        );
+        assert!(written.contains("# of a rat") && !written.contains("tip_radius_um"), "{written}");
         let again = parse(&written).unwrap();
         let tips = [&again, &changed].map(|scene| scene.whisker.tip_radius_um);
-        assert!(
-            (tips[0] - tips[1]).abs() < 1e-13 * changed.whisker.base_radius_um,
-            "{tips:?}"
-        );
+        assert!((tips[0] - tips[1]).abs() < 1e-13 * changed.whisker.base_radius_um, "{tips:?}");
         assert_eq!(again.whisker.base_radius_um, changed.whisker.base_radius_um);
     }
 }
@@ -327,14 +213,8 @@ fn a_taper_takes_the_place_of_the_radius_at_the_tip() {
 fn a_taper_beside_other_radii_at_the_tip_is_refused() {
     let text = with_line(5, "taper = 0.95");
     for (axis, said) in [
-        (
-            "taper = [0.5]",
-            "grid.taper gives every whisker of the sweep its tip",
-        ),
-        (
-            "tip_radius_um = [1]",
-            "grid.tip_radius_um gives every whisker of the sweep its tip",
-        ),
+        ("taper = [0.5]", "grid.taper gives every whisker of the sweep its tip"),
+        ("tip_radius_um = [1]", "grid.tip_radius_um gives every whisker of the sweep its tip"),
         (
             "base_radius_um = [30, 40]",
             "grid.base_radius_um varies the base; give whisker.tip_radius_um to keep the tip, or grid.taper",
@@ -345,10 +225,7 @@ fn a_taper_beside_other_radii_at_the_tip_is_refused() {
         assert!(why.contains(&said), "{why}");
     }
     let no_base = parse(&text.replace("base_radius_um = 30.0", "")).unwrap_err();
-    assert!(
-        no_base.contains("whisker.base_radius_um: is left out"),
-        "{no_base}"
-    );
+    assert!(no_base.contains("whisker.base_radius_um: is left out"), "{no_base}");
     let rows = "profile = { rows = [[0, 30], [20, 1.5]] }";
     let measured = parse(&text.replace("base_radius_um = 30.0", rows)).unwrap_err();
     let said = "whisker.taper = 0.95: must be left out: the radii are those of whisker.profile";

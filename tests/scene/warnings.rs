@@ -17,31 +17,14 @@ fn a_number_in_another_unit_is_named_with_key_value_and_unit() {
         (
             4,
             "base_radius_um = 0.03\ntip_radius_um = 0",
-            &[
-                "whisker.base_radius_um = 0.03 um",
-                thin,
-                "is it in mm",
-                forces,
-            ][..],
+            &["whisker.base_radius_um = 0.03 um", thin, "is it in mm", forces][..],
         ),
-        (
-            4,
-            "base_radius_um = 30000",
-            &["whisker.base_radius_um = 30000 um", thin, "is it in nm"],
-        ),
-        (
-            5,
-            "tip_radius_um = 0.0015",
-            &["whisker.tip_radius_um = 0.0015 um", thin, "is it in mm"],
-        ),
+        (4, "base_radius_um = 30000", &["whisker.base_radius_um = 30000 um", thin, "is it in nm"]),
+        (5, "tip_radius_um = 0.0015", &["whisker.tip_radius_um = 0.0015 um", thin, "is it in mm"]),
         (
             6,
             "youngs_modulus_gpa = 3000",
-            &[
-                "whisker.youngs_modulus_gpa = 3000 GPa",
-                "0.1 to 250 GPa",
-                "is it in MPa",
-            ],
+            &["whisker.youngs_modulus_gpa = 3000 GPa", "0.1 to 250 GPa", "is it in MPa"],
         ),
         (
             6,
@@ -55,10 +38,7 @@ fn a_number_in_another_unit_is_named_with_key_value_and_unit() {
         }
         let found = warnings(&text).join("\n");
         for part in parts {
-            assert!(
-                found.contains(part),
-                "{replacement}: no {part:?} in {found:?}"
-            );
+            assert!(found.contains(part), "{replacement}: no {part:?} in {found:?}");
         }
     }
     // No other unit makes it a modulus of a whisker.
@@ -78,32 +58,19 @@ fn axes_are_looked_at_from_end_to_end() {
     let axis = |axis: &str| warnings(&BASE.replace("# taper", &format!("{axis}\n# taper")));
     assert_eq!(axis("base_radius_um = [20, 30]"), [""; 0]);
     let thick = axis("base_radius_um = [20, 30, 3000]");
-    assert!(
-        thick[0].starts_with("grid.base_radius_um = 3000 um"),
-        "{thick:?}"
-    );
+    assert!(thick[0].starts_with("grid.base_radius_um = 3000 um"), "{thick:?}");
     let thin = axis("tip_radius_um = [0, 0.1, 1]");
-    assert!(
-        thin[0].starts_with("grid.tip_radius_um = 0.1 um"),
-        "{thin:?}"
-    );
+    assert!(thin[0].starts_with("grid.tip_radius_um = 0.1 um"), "{thin:?}");
     // The tip of a taper is none of the scene's numbers.
-    let tapers = BASE
-        .replace("tip_radius_um = 1.5", "")
-        .replace("# taper", "taper");
+    let tapers = BASE.replace("tip_radius_um = 1.5", "").replace("# taper", "taper");
     assert_eq!(warnings(&tapers), [""; 0]);
 }
 
 #[test]
 fn forces_of_slender_rods_count_too() {
     let soft = BASE.replace("= 30.0", "= 1").replace("= 1.5", "= 1");
-    let soft = soft
-        .replace("length_mm = 20", "length_mm = 99")
-        .replace("= 3.0", "= 0.1");
-    let soft = soft
-        .replace("[2.0", "[3.0")
-        .replace("0.04", "0.004")
-        .replace("0.02", "0.002");
+    let soft = soft.replace("length_mm = 20", "length_mm = 99").replace("= 3.0", "= 0.1");
+    let soft = soft.replace("[2.0", "[3.0").replace("0.04", "0.004").replace("0.02", "0.002");
     let found = warnings(&soft);
     assert_eq!(found.len(), 1, "{found:?}");
     assert!(
@@ -121,10 +88,7 @@ fn of_measured_radii_the_largest_counts() {
         warnings(&text.replace("tip_radius_um = 1.5", ""))
     };
     let found = measured("[[0, 0.03], [10, 0.04], [20, 0.0015]]");
-    assert!(
-        found[0].starts_with("whisker.profile.rows = 0.04 um"),
-        "{found:?}"
-    );
+    assert!(found[0].starts_with("whisker.profile.rows = 0.04 um"), "{found:?}");
     assert_eq!(measured("[[0, 30], [10, 8], [20, 0.1]]"), [""; 0]);
 }
 
@@ -148,15 +112,10 @@ fn radii_that_scatter_are_named() {
     let rough = found(&rows(0.5, 41), "");
     assert_eq!(rough.len(), 1, "{rough:?}");
     let (said, rest) = rough[0].split_once(" um from row to row").unwrap();
-    let scatter = said
-        .strip_prefix("whisker.profile.rows: radii scatter by ")
-        .unwrap();
+    let scatter = said.strip_prefix("whisker.profile.rows: radii scatter by ").unwrap();
     let scatter: f64 = scatter.parse().unwrap();
     assert!((scatter / 0.5 - 1.0).abs() < 0.3, "{scatter}");
-    assert!(
-        rest.contains("expected at most 0.5 %. Tapers between rows are off by "),
-        "{rest}"
-    );
+    assert!(rest.contains("expected at most 0.5 %. Tapers between rows are off by "), "{rest}");
     assert!(
         rough[0].contains(
             "smooth = true replaces the radii by a polynomial through the rows: degree 2"

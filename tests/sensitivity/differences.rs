@@ -58,21 +58,14 @@ const KNOWN: f64 = 1e-6;
 fn differences(push: &Push, variable: Variable, here: &Detachment) -> Option<[f64; 11]> {
     let h = push.step(variable);
     let at = |h: f64| {
-        let Push {
-            whisker,
-            pole,
-            side,
-            distance_mm,
-        } = push.moved(variable, h);
+        let Push { whisker, pole, side, distance_mm } = push.moved(variable, h);
         let finer = Resolution::FINE.doubled();
         let end = ends_at(finer, &whisker, &pole, side, &[distance_mm]).pop()?;
         quantities(&end).filter(|_| end.kind == here.kind)
     };
     let central = |h: f64| {
         let (low, high) = (at(-h)?, at(h)?);
-        Some(std::array::from_fn::<f64, 11, _>(|i| {
-            (high[i] - low[i]) / (2.0 * h)
-        }))
+        Some(std::array::from_fn::<f64, 11, _>(|i| (high[i] - low[i]) / (2.0 * h)))
     };
     let [d1, d2, d4] = [central(h)?, central(0.5 * h)?, central(0.25 * h)?];
     let values = quantities(here)?;
@@ -115,12 +108,7 @@ const MEASURED_TURNS: f64 = 2.0;
 pub fn compare(index: u64) -> Compared {
     let push = push(index);
     let variables = push.variables();
-    let Push {
-        whisker,
-        pole,
-        side,
-        distance_mm,
-    } = &push;
+    let Push { whisker, pole, side, distance_mm } = &push;
     let ends = detachments(whisker, pole, *side, &[*distance_mm], &variables);
     let end = &ends[0].end;
     let mut compared = Compared::default();
@@ -131,10 +119,7 @@ pub fn compare(index: u64) -> Compared {
         assert!(ends[0].by.iter().all(no));
         return compared;
     };
-    assert!(matches!(
-        end.kind,
-        DetachmentKind::SlipOff | DetachmentKind::PullOff
-    ));
+    assert!(matches!(end.kind, DetachmentKind::SlipOff | DetachmentKind::PullOff));
     let turns = values[0].abs() / 360.0;
     let is_followed = whisker.profile.is_none() || turns < MEASURED_TURNS;
     let all = variables.iter().zip(&ends[0].by);
@@ -162,29 +147,16 @@ fn largest_loads_change_by_their_derivatives() {
     use whiskmap::trace::{PushLoad, StableBranch};
     let scene = include_str!("../../scenes/cone.toml");
     let scene = Scene::parse(scene, "cone.toml").unwrap();
-    let variables = [
-        Parameter::Taper,
-        Parameter::BaseRadiusUm,
-        Parameter::YoungsModulusGpa,
-    ]
-    .map(Variable::from);
+    let variables = [Parameter::Taper, Parameter::BaseRadiusUm, Parameter::YoungsModulusGpa]
+        .map(Variable::from);
     let mut before = 0;
     for (side, distance_mm) in [(Side::Cb, 15.66), (Side::Cf, 15.66), (Side::Cb, 8.0)] {
         for load in [PushLoad::ContactForce, PushLoad::BaseMoment] {
-            let found = largest(
-                &scene.whisker,
-                &scene.pole,
-                side,
-                distance_mm,
-                load,
-                &variables,
-            )
-            .unwrap();
+            let found =
+                largest(&scene.whisker, &scene.pole, side, distance_mm, load, &variables).unwrap();
             before += u32::from(found.peak.before_end_deg.is_some());
             for (variable, by) in variables.iter().zip(found.by) {
-                let Variable::Parameter(parameter) = variable else {
-                    panic!()
-                };
+                let Variable::Parameter(parameter) = variable else { panic!() };
                 let current = parameter.value(&scene).unwrap();
                 let step = 1e-4 * current;
                 let [less, more] = [-step, step].map(|step| {
@@ -204,14 +176,8 @@ fn largest_loads_change_by_their_derivatives() {
         }
     }
     assert!(before > 0);
-    let strain = largest(
-        &scene.whisker,
-        &scene.pole,
-        Side::Cb,
-        15.66,
-        PushLoad::Strain,
-        &variables,
-    )
-    .unwrap();
+    let strain =
+        largest(&scene.whisker, &scene.pole, Side::Cb, 15.66, PushLoad::Strain, &variables)
+            .unwrap();
     assert_eq!(strain.by[0], Err(NoDerivative::Strain));
 }

@@ -72,8 +72,7 @@ fn derivatives_take_memory() {
     let scene = shipped::scene("cone");
     let plan = |channels: &str| {
         let plan = Plan::in_memory(&scene).unwrap();
-        plan.with_channels(channels.parse().unwrap(), &scene)
-            .unwrap()
+        plan.with_channels(channels.parse().unwrap(), &scene).unwrap()
     };
     let with = plan("regime,d_push_d_taper,d_push_d_length_mm").bytes;
     assert_eq!(with - plan("regime").bytes, 2 * 4 * 512 * 512);

@@ -19,9 +19,7 @@ fn detachments_of_random_whiskers_are_differentiated() {
     let compared: Vec<Compared> = (0..1000).into_par_iter().map(compare).collect();
     let count: usize = compared.iter().map(|part| part.count).sum();
     let left_out: usize = compared.iter().map(|part| part.left_out).sum();
-    let worst = compared
-        .iter()
-        .fold(0.0, |worst: f64, part| worst.max(part.worst));
+    let worst = compared.iter().fold(0.0, |worst: f64, part| worst.max(part.worst));
     assert!(worst < 2e-7, "{worst:e}");
     assert!(count > 700 && left_out < count / 8, "{count} {left_out}");
 }
@@ -39,10 +37,7 @@ fn missing_derivatives_have_reasons() {
     assert_eq!(by(reach), Err(NoDerivative::AtTouch));
     assert_eq!(by(1.01 * reach), Err(NoDerivative::NoDetachment));
     assert_eq!(by(corner), Err(NoDerivative::Corner));
-    let absent = [
-        Variable::from(Parameter::SpiralPerMm),
-        Variable::ProfileRadiusUm(0),
-    ];
+    let absent = [Variable::from(Parameter::SpiralPerMm), Variable::ProfileRadiusUm(0)];
     let ends = detachments(whisker, pole, Side::Cb, &[15.0], &absent);
     assert_eq!(ends[0].by, [Err(NoDerivative::NotGiven); 2]);
 }
@@ -59,15 +54,9 @@ fn a_straight_whisker_begins_to_bend() {
             let (per_mm, per_mm2) = (2.0 * bend, 0.0);
             bent.euler_spiral = Some(EulerSpiral { per_mm, per_mm2 });
         } else {
-            bent.curvature = Some(Curvature {
-                parabola_per_mm: bend,
-                vertex_mm: 0.0,
-            });
+            bent.curvature = Some(Curvature { parabola_per_mm: bend, vertex_mm: 0.0 });
         }
-        detachments(&bent, &pole, Side::Cb, &[15.0], &[])[0]
-            .end
-            .push_angle_deg
-            .unwrap()
+        detachments(&bent, &pole, Side::Cb, &[15.0], &[])[0].end.push_angle_deg.unwrap()
     };
     let both = [Parameter::ParabolaPerMm, Parameter::SpiralPerMm].map(Variable::from);
     let together = detachments(&straight, &pole, Side::Cb, &[15.0], &both);

@@ -41,17 +41,12 @@ pub fn push(index: u64) -> Push {
         let mut rows: Vec<[f64; 2]> = (0..7).map(row).collect();
         // The cone beyond the last row.
         let ([_, before], [_, last]) = (rows[5], rows[6]);
-        rows.push([
-            1.0,
-            last + (last - before).min(-0.02 * last).max(-0.6 * last),
-        ]);
+        rows.push([1.0, last + (last - before).min(-0.02 * last).max(-0.6 * last)]);
         rows
     });
     let tip = rows.as_ref().map_or(1.0 - taper, |rows| rows[7][1]);
-    let curvature = (shape == 0 || measured).then(|| Curvature {
-        parabola_per_mm: bend,
-        vertex_mm: between(-0.3, 0.3) * length_mm,
-    });
+    let curvature = (shape == 0 || measured)
+        .then(|| Curvature { parabola_per_mm: bend, vertex_mm: between(-0.3, 0.3) * length_mm });
     let euler_spiral = (shape == 1).then(|| EulerSpiral {
         per_mm: between(-0.8, 0.8) / length_mm,
         per_mm2: between(-0.8, 0.8) / (length_mm * length_mm),
@@ -75,15 +70,8 @@ pub fn push(index: u64) -> Push {
             follicle_stiffness_nnm_per_rad: None,
             yield_strain: None,
         },
-        pole: Pole {
-            radius_mm: between(0.0, 0.03) * length_mm,
-            friction: between(0.0, 0.4),
-        },
-        side: if between(0.0, 1.0) < 0.5 {
-            Side::Cb
-        } else {
-            Side::Cf
-        },
+        pole: Pole { radius_mm: between(0.0, 0.03) * length_mm, friction: between(0.0, 0.4) },
+        side: if between(0.0, 1.0) < 0.5 { Side::Cb } else { Side::Cf },
         distance_mm: between(0.15, 0.98) * length_mm,
     };
     if index % 4 == 3 {
@@ -118,17 +106,12 @@ impl Push {
         let rows = self.whisker.profile.as_ref().map_or(0, Vec::len);
         let all = all.into_iter().map(Variable::Parameter);
         let all = all.chain([Variable::DistanceMm]);
-        all.chain((0..rows).map(Variable::ProfileRadiusUm))
-            .collect()
+        all.chain((0..rows).map(Variable::ProfileRadiusUm)).collect()
     }
 
     /// The change of a variable that changes the whisker or its push as a whole.
     pub fn size(&self, variable: Variable) -> f64 {
-        let Whisker {
-            length_mm,
-            base_radius_um,
-            ..
-        } = self.whisker;
+        let Whisker { length_mm, base_radius_um, .. } = self.whisker;
         match variable {
             Variable::ProfileRadiusUm(row) => {
                 let rows = self.whisker.profile.as_deref().unwrap_or_default();
@@ -191,8 +174,7 @@ impl Push {
                     let ([from, before], [end, last]) = (rows[5], rows[6]);
                     let length = whisker.length_mm;
                     rows[7][1] += (last - before) / (end - from) * h / length;
-                    rows.iter_mut()
-                        .for_each(|row| row[0] *= length / (length + h));
+                    rows.iter_mut().for_each(|row| row[0] *= length / (length + h));
                     rows[7][0] = 1.0;
                     whisker.length_mm += h;
                     whisker.tip_radius_um = rows[7][1] * whisker.base_radius_um;
@@ -228,10 +210,6 @@ impl Push {
         let whisker = &mut self.whisker;
         whisker.base_radius_um = base * whisker.profile_scale;
         whisker.tip_radius_um = rows[rows.len() - 1][1] * whisker.profile_scale;
-        whisker.profile = Some(
-            rows.into_iter()
-                .map(|[s, radius]| [s, radius / base])
-                .collect(),
-        );
+        whisker.profile = Some(rows.into_iter().map(|[s, radius]| [s, radius / base]).collect());
     }
 }

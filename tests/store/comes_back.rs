@@ -79,10 +79,7 @@ fn every_attribute_comes_back() {
         let layout = map.layout;
         let attribute = |name| map.attribute(name).unwrap();
         assert_eq!(attribute("scene"), json!(scene.text.to_string()));
-        assert_eq!(
-            attribute("whiskmap_version"),
-            json!(env!("CARGO_PKG_VERSION"))
-        );
+        assert_eq!(attribute("whiskmap_version"), json!(env!("CARGO_PKG_VERSION")));
         assert_eq!(attribute("engine"), json!("cpu f64"));
         assert_eq!(attribute("adapter"), json!("a \u{201c}card\u{201d}"));
         assert_eq!(attribute("tolerances"), json!({"rtol": 0.1 + 0.2}));
@@ -128,19 +125,14 @@ fn unresolved_cells_do_not_count_for_the_worst_residual() {
     let scene = scene(40, 30, None, None);
     let tolerances = json!(null);
     let about = map::describe(&scene, &tolerances);
-    let mut writer = MapWriter::create(
-        Output::create(&path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut writer =
+        MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     let mut panel = panel(&scene, 0);
     panel.regime[0] = Regime::Unresolved.code();
     panel.residual[0] = 1.0;
     writer.write_panels(&[panel]).unwrap();
-    let counts = writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap()
-        .counts;
+    let counts = writer.finish(EngineCells::default(), Audit::default()).unwrap().counts;
     // Residuals of made-up cells are at most 70e-9.
     assert!(counts.worst_residual.unwrap() < 1e-6);
 }
@@ -185,17 +177,12 @@ fn another_strict_reader_finds_every_cell_where_the_axes_say() {
             .from_file(&path)
             .unwrap();
         let names = image.layer_data.iter().map(|layer| &layer.attributes);
-        let names: Vec<_> = names
-            .map(|name| name.layer_name.clone().unwrap().to_string())
-            .collect();
+        let names: Vec<_> =
+            names.map(|name| name.layer_name.clone().unwrap().to_string()).collect();
         assert_eq!(names, ["regime", "state", "numerics"]);
         let layout = AtlasLayout::of(&scene.grid);
         let width = layout.columns * 23;
-        for found in image
-            .layer_data
-            .iter()
-            .flat_map(|layer| &layer.channel_data.list)
-        {
+        for found in image.layer_data.iter().flat_map(|layer| &layer.channel_data.list) {
             let name = found.name.to_string();
             for index in 0..layout.panels() {
                 let (column, row) = (index % layout.columns, index / layout.columns);
@@ -228,13 +215,8 @@ fn blocks_lie_in_the_order_that_the_header_promises() {
             assert_eq!(header.line_order, LineOrder::Increasing);
             let mut table = vec![0; 8 * header.chunk_count];
             file.read_exact(&mut table).unwrap();
-            let offsets: Vec<u64> = table
-                .as_chunks()
-                .0
-                .iter()
-                .copied()
-                .map(u64::from_le_bytes)
-                .collect();
+            let offsets: Vec<u64> =
+                table.as_chunks().0.iter().copied().map(u64::from_le_bytes).collect();
             assert!(offsets.is_sorted_by(|one, next| one < next), "{offsets:?}");
         }
     }

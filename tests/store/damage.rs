@@ -42,10 +42,7 @@ fn files_that_are_cut_or_grown_are_damaged_without_reading_them() {
     fs::write(&file, flipped).unwrap();
     assert!(damaged(&store, CheckDepth::Structure).is_empty());
     let faults = damaged(&store, CheckDepth::Values);
-    assert!(
-        faults[0].contains("chunk 0 does not have its checksum"),
-        "{faults:?}"
-    );
+    assert!(faults[0].contains("chunk 0 does not have its checksum"), "{faults:?}");
 }
 
 /// A writer with a fault: the index has its checksum, but not the places and sizes of the chunks.
@@ -73,17 +70,10 @@ fn an_index_must_fit_the_chunks() {
     }
     // Sizes of which one wraps around.
     let mut forged = sealed.to_vec();
-    let entries = [
-        index + 2 * ENTRY - 8,
-        index + 2 * ENTRY,
-        index + 2 * ENTRY + 8,
-    ];
+    let entries = [index + 2 * ENTRY - 8, index + 2 * ENTRY, index + 2 * ENTRY + 8];
     let number = |place: usize| u64::from_le_bytes(sealed[place..place + 8].try_into().unwrap());
     let [size, begin, last] = entries.map(number);
-    for (place, number) in entries
-        .into_iter()
-        .zip([u64::MAX, begin - size - 1, last + size + 1])
-    {
+    for (place, number) in entries.into_iter().zip([u64::MAX, begin - size - 1, last + size + 1]) {
         forged[place..place + 8].copy_from_slice(&number.to_le_bytes());
     }
     let checksum = crc32c::crc32c(&forged[index..]).to_le_bytes();
@@ -111,11 +101,9 @@ fn blocks_of_other_stores_and_places_are_damaged() {
     store(&other, &SCENE.replace("0.8, 1]", "0.9, 1]"));
     let file = one.join("regime/c.0.0.0");
     let whole = fs::read(&file).unwrap();
-    for foreign in [
-        other.join("regime/c.0.0.0"),
-        one.join("regime/c.1.0.0"),
-        one.join("status/c.0.0.0"),
-    ] {
+    for foreign in
+        [other.join("regime/c.0.0.0"), one.join("regime/c.1.0.0"), one.join("status/c.0.0.0")]
+    {
         fs::copy(&foreign, &file).unwrap();
         let faults = damaged(&store_of_one, CheckDepth::Structure);
         assert!(faults[0].contains("belongs to another block"), "{faults:?}");
@@ -135,21 +123,13 @@ fn counts_are_compared_with_the_regimes() {
     let counts = path.join("regime_cells/c.1.0");
     let sound = fs::read(&counts).unwrap();
     let mut panel = panel(&scene, 3);
-    let contact = panel
-        .regime
-        .iter()
-        .position(|code| *code == Regime::Contact.code());
+    let contact = panel.regime.iter().position(|code| *code == Regime::Contact.code());
     panel.regime[contact.unwrap()] = Regime::SlipOff.code();
-    store
-        .write(1, &[store.pack(&panel)], &TemporaryFiles::default())
-        .unwrap();
+    store.write(1, &[store.pack(&panel)], &TemporaryFiles::default()).unwrap();
     assert!(is_sound(&path));
     fs::write(&counts, sound).unwrap();
     let faults = damaged(&store, CheckDepth::Values);
-    assert!(
-        faults[0].contains("its counts are not those of the array `regime`"),
-        "{faults:?}"
-    );
+    assert!(faults[0].contains("its counts are not those of the array `regime`"), "{faults:?}");
 }
 
 /// A writer with a fault: a code without a name, with counts that fit.
@@ -161,9 +141,7 @@ fn codes_without_a_name_are_damaged() {
     let scene = Scene::parse(SCENE, "scene.toml").unwrap();
     let mut panel = panel(&scene, 3);
     panel.regime[7] = 99;
-    store
-        .write(1, &[store.pack(&panel)], &TemporaryFiles::default())
-        .unwrap();
+    store.write(1, &[store.pack(&panel)], &TemporaryFiles::default()).unwrap();
     let faults = damaged(&store, CheckDepth::Values);
     assert_eq!(faults.len(), 1);
     assert!(faults[0].contains("the code 99 has no name"), "{faults:?}");

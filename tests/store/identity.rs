@@ -8,10 +8,7 @@ use whiskmap::scene::Scene;
 use whiskmap::store::{MapDescription, TemporaryFiles, ZarrStore};
 
 fn engine(name: &str) -> EngineDescription {
-    EngineDescription {
-        engine: name.to_owned(),
-        adapter: String::new(),
-    }
+    EngineDescription { engine: name.to_owned(), adapter: String::new() }
 }
 
 #[test]
@@ -32,21 +29,10 @@ fn a_store_has_one_scene_version_engine_arithmetic_and_accuracy() {
         "{why}"
     );
     let engine = engine("gpu f32");
-    let why = join(&MapDescription {
-        engine: &engine,
-        ..fma
-    })
-    .unwrap_err();
-    assert!(
-        why.contains("differs in `engine`: cpu f64 there, gpu f32 here;"),
-        "{why}"
-    );
+    let why = join(&MapDescription { engine: &engine, ..fma }).unwrap_err();
+    assert!(why.contains("differs in `engine`: cpu f64 there, gpu f32 here;"), "{why}");
     let tolerances = json!({ "rtol": 1 });
-    let why = join(&MapDescription {
-        tolerances: &tolerances,
-        ..fma
-    })
-    .unwrap_err();
+    let why = join(&MapDescription { tolerances: &tolerances, ..fma }).unwrap_err();
     assert!(why.contains("differs in `tolerances`"), "{why}");
     let channels = Channels::STANDARD;
     let why = join(&MapDescription { channels, ..fma }).unwrap_err();
@@ -70,15 +56,10 @@ fn of_two_engines_that_create_a_store_one_succeeds() {
         let start = std::sync::Barrier::new(2);
         let create = |name: &str| {
             let engine = engine(name);
-            let about = MapDescription {
-                engine: &engine,
-                ..about(&scene, "fma")
-            };
+            let about = MapDescription { engine: &engine, ..about(&scene, "fma") };
             let store = ZarrStore::join(&path, &scene, &about, true).unwrap();
             start.wait();
-            store
-                .begin(&TemporaryFiles::default())
-                .map_err(|why| why.to_string())
+            store.begin(&TemporaryFiles::default()).map_err(|why| why.to_string())
         };
         let results = std::thread::scope(|scope| {
             let both = ["cpu f64", "gpu f32"].map(|name| scope.spawn(move || create(name)));
@@ -89,12 +70,6 @@ fn of_two_engines_that_create_a_store_one_succeeds() {
             _ => panic!("{results:?}"),
         };
         assert!(why.contains("differs in `engine`: "), "{why}");
-        assert!(
-            ZarrStore::open(&path)
-                .unwrap()
-                .metadata_faults()
-                .unwrap()
-                .is_empty()
-        );
+        assert!(ZarrStore::open(&path).unwrap().metadata_faults().unwrap().is_empty());
     }
 }

@@ -35,9 +35,7 @@ pub fn store(path: &Path, text: &str) -> ZarrStore {
     for block in 0..store.block_count() {
         let panels = store.whiskers(block).map(|whisker| panel(&scene, whisker));
         let packed: Vec<PackedPanel> = panels.map(|panel| store.pack(&panel)).collect();
-        store
-            .write(block, &packed, &TemporaryFiles::default())
-            .unwrap();
+        store.write(block, &packed, &TemporaryFiles::default()).unwrap();
     }
     store
 }
@@ -48,8 +46,6 @@ pub fn is_sound(path: &Path) -> bool {
         return false;
     };
     let mut blocks = 0..store.block_count();
-    store
-        .metadata_faults()
-        .is_ok_and(|faults| faults.is_empty())
+    store.metadata_faults().is_ok_and(|faults| faults.is_empty())
         && blocks.all(|block| matches!(store.state(block, CheckDepth::Values), BlockState::Done))
 }

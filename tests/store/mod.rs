@@ -23,8 +23,5 @@ type Swept = Option<Vec<f64>>;
 
 /// One whisker, and an atlas of three tapers by two curvatures.
 fn sweeps() -> [(Swept, Swept); 2] {
-    [
-        (None, None),
-        (Some(vec![0.5, 0.75, 0.95]), Some(vec![0.0, 0.012])),
-    ]
+    [(None, None), (Some(vec![0.5, 0.75, 0.95]), Some(vec![0.0, 0.012]))]
 }

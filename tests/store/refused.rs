@@ -13,9 +13,7 @@ use whiskmap::store::{
 
 fn listing(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
-    entries
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect()
+    entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect()
 }
 
 #[test]
@@ -26,27 +24,20 @@ fn a_map_appears_only_when_it_is_finished() {
     let tolerances = json!(null);
     let about = map::describe(&scene, &tolerances);
 
-    let mut dropped = MapWriter::create(
-        Output::create(&path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut dropped =
+        MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     dropped.write_panels(&[panel(&scene, 0)]).unwrap();
     assert_eq!(listing(folder.path()).len(), 1);
     assert!(!path.exists());
     drop(dropped);
     assert!(listing(folder.path()).is_empty());
 
-    let mut short = MapWriter::create(
-        Output::create(&path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut short =
+        MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     short.write_panels(&[panel(&scene, 0)]).unwrap();
-    let error = short
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap_err()
-        .to_string();
+    let error = short.finish(EngineCells::default(), Audit::default()).unwrap_err().to_string();
     assert_eq!(error, "the map was finished after 1 of 2 panels");
     assert!(listing(folder.path()).is_empty());
 
@@ -92,10 +83,7 @@ fn a_panel_that_does_not_fit_is_refused() {
     );
     let mut small = good.clone();
     small.state[3].pop();
-    assert_eq!(
-        refusal(&[small]),
-        "panel 0: channel `base_force_x_un` has 19 cells instead of 20"
-    );
+    assert_eq!(refusal(&[small]), "panel 0: channel `base_force_x_un` has 19 cells instead of 20");
     let mut strange = good.clone();
     strange.regime[7] = 99;
     assert_eq!(
@@ -105,10 +93,7 @@ fn a_panel_that_does_not_fit_is_refused() {
     // None of them was counted.
     assert!(refusal(&[good.clone(), strange]).starts_with("panel 1: "));
     writer.write_panels(&[good.clone(), good]).unwrap();
-    let counts = writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap()
-        .counts;
+    let counts = writer.finish(EngineCells::default(), Audit::default()).unwrap().counts;
     assert_eq!(counts.regimes.values().sum::<u64>(), 40);
 }
 
@@ -135,11 +120,9 @@ fn bands_make_the_same_file() {
     };
     let write = |name: &str, bands: &[Panel]| {
         let path = folder.path().join(name);
-        let mut writer = MapWriter::create(
-            Output::create(&path, &TemporaryFiles::default()).unwrap(),
-            &about,
-        )
-        .unwrap();
+        let mut writer =
+            MapWriter::create(Output::create(&path, &TemporaryFiles::default()).unwrap(), &about)
+                .unwrap();
         for band in bands {
             writer.write_panels(std::slice::from_ref(band))?;
         }
@@ -154,14 +137,8 @@ fn bands_make_the_same_file() {
         refusal(&[rows(0, 32), rows(32, 50)]),
         "panel 0: channel `regime` has 90 cells instead of 190"
     );
-    assert_eq!(
-        refusal(&bands[..2]),
-        "the map was finished after 0 of 1 panels"
-    );
-    assert_eq!(
-        refusal(&[whole.clone(), rows(0, 16)]),
-        "there is no panel 1; the map has 1"
-    );
+    assert_eq!(refusal(&bands[..2]), "the map was finished after 0 of 1 panels");
+    assert_eq!(refusal(&[whole.clone(), rows(0, 16)]), "there is no panel 1; the map has 1");
 }
 
 #[test]
@@ -236,16 +213,8 @@ fn axes_that_contradict_themselves_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("map.exr");
     for (text, forged, why) in [
-        (
-            "[3.0,20.5]",
-            "[3e1,20.5]",
-            "the values of `distance_mm` do not increase",
-        ),
-        (
-            "[3.0,20.5]",
-            "[3.0,3.00]",
-            "the values of `distance_mm` do not increase",
-        ),
+        ("[3.0,20.5]", "[3e1,20.5]", "the values of `distance_mm` do not increase"),
+        ("[3.0,20.5]", "[3.0,3.00]", "the values of `distance_mm` do not increase"),
         ("[2,1]", "[1,2]", "attributes `panels` and `axes` differ"),
     ] {
         write(&path, &scene(3, 2, Some(vec![0.5, 0.9]), None));
@@ -277,11 +246,7 @@ fn a_block_in_the_place_of_another_is_refused() {
     let (one, other) = bytes[table..table + 16].split_at_mut(8);
     one.swap_with_slice(other);
     fs::write(&path, bytes).unwrap();
-    let error = StoredMap::open(&path)
-        .unwrap()
-        .read_channel("regime")
-        .unwrap_err()
-        .to_string();
+    let error = StoredMap::open(&path).unwrap().read_channel("regime").unwrap_err().to_string();
     assert!(error.contains("another block is in its place"), "{error}");
 }
 
@@ -306,10 +271,7 @@ fn a_file_cut_short_is_an_error_at_every_length() {
             fs::write(&path, &whole[..length]).unwrap();
             let error = read_all(&path).unwrap_err();
             assert!(
-                matches!(
-                    error,
-                    StoreError::NotExr { .. } | StoreError::Damaged { .. }
-                ),
+                matches!(error, StoreError::NotExr { .. } | StoreError::Damaged { .. }),
                 "{length}: {error}"
             );
         }

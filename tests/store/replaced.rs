@@ -40,17 +40,13 @@ fn scenes() -> [SceneData; 2] {
 fn write_from(path: &Path, scene: &SceneData, from: usize) -> StoredMap {
     let tolerances = json!(null);
     let about = map::describe(scene, &tolerances);
-    let mut writer = MapWriter::create(
-        Output::create(path, &TemporaryFiles::default()).unwrap(),
-        &about,
-    )
-    .unwrap();
+    let mut writer =
+        MapWriter::create(Output::create(path, &TemporaryFiles::default()).unwrap(), &about)
+            .unwrap();
     for index in 0..scene.whisker_count() {
         writer.write_panels(&[panel(scene, from + index)]).unwrap();
     }
-    writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap()
+    writer.finish(EngineCells::default(), Audit::default()).unwrap()
 }
 
 /// Another thread replaces the map without a pause, by the one and the other of two maps in turn.

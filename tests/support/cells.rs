@@ -19,12 +19,7 @@ const COLUMNS: usize = 64;
 const LARGEST_PUSH: f64 = 1.8;
 
 /// Values as states have them: whisker lengths and `E I_base/L_w^2`, angles in degrees.
-const NO_UNITS: Units = Units {
-    length_mm: 1.0,
-    force_un: 1.0,
-    moment_nnm: 1.0,
-    strain: 1.0,
-};
+const NO_UNITS: Units = Units { length_mm: 1.0, force_un: 1.0, moment_nnm: 1.0, strain: 1.0 };
 
 /// Rows of random whiskers, each on the side of its pole.
 pub struct RandomRows {
@@ -66,11 +61,7 @@ impl RandomRows {
             WhiskerSide::new(Arc::clone(columns), NO_UNITS, sheet)
                 .with_net(Spectral::default().residual_bound())
         });
-        Self {
-            method,
-            rows,
-            sides: sides.collect::<Vec<_>>().into(),
-        }
+        Self { method, rows, sides: sides.collect::<Vec<_>>().into() }
     }
 
     /// Number of rows.

@@ -81,12 +81,7 @@ pub struct Watched<F> {
 
 impl<F: Call> Watched<F> {
     pub const fn new(gpu: Gpu, call: F) -> Self {
-        Self {
-            gpu,
-            call,
-            submitted: VecDeque::new(),
-            calls: 0,
-        }
+        Self { gpu, call, submitted: VecDeque::new(), calls: 0 }
     }
 }
 
@@ -129,15 +124,12 @@ pub fn sabotaged(
     at: usize,
     mut sabotage: impl FnMut(&wgpu::Device) + Send,
 ) -> Watched<impl Call> {
-    Watched::new(
-        gpu,
-        move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
-            if call == at {
-                sabotage(gpu.device());
-            }
-            solve(gpu)
-        },
-    )
+    Watched::new(gpu, move |call, gpu: &mut Gpu, solve: &dyn Fn(&mut Gpu) -> Response| {
+        if call == at {
+            sabotage(gpu.device());
+        }
+        solve(gpu)
+    })
 }
 
 /// How far the states of an engine may be from those of the CPU, in parts of a channel's largest value along a whisker: at worst, and
@@ -172,9 +164,8 @@ pub fn median_and_worst(sorted: &[f32]) -> (f32, f32) {
 /// For each channel how far the states are apart that two engines found, in parts of its largest value, sorted. A cell was solved by
 /// another engine if its residual is another.
 pub fn differences(a: &Panel, b: &Panel) -> [Vec<f32>; STATE_CHANNELS.len()] {
-    let other: Vec<bool> = (a.residual.iter().zip(&b.residual))
-        .map(|(a, b)| a.to_bits() != b.to_bits())
-        .collect();
+    let other: Vec<bool> =
+        (a.residual.iter().zip(&b.residual)).map(|(a, b)| a.to_bits() != b.to_bits()).collect();
     std::array::from_fn(|channel| {
         let apart = relative(&a.state[channel], &b.state[channel]);
         let theirs = apart.zip(&other);

@@ -6,12 +6,8 @@ use whiskmap::mechanics::rod::Effects;
 
 /// Every set of effects. A profile tapers, whatever `taper` says.
 pub fn all() -> impl Iterator<Item = Effects> {
-    let rest = [
-        (false, false, false),
-        (true, false, false),
-        (false, true, false),
-        (false, false, true),
-    ];
+    let rest =
+        [(false, false, false), (true, false, false), (false, true, false), (false, false, true)];
     let stiffness = [
         (false, false, false),
         (true, false, false),
@@ -20,19 +16,16 @@ pub fn all() -> impl Iterator<Item = Effects> {
         (true, false, true),
         (true, true, true),
     ];
-    rest.into_iter()
-        .flat_map(move |(curvature, spiral, polynomial)| {
-            stiffness
-                .into_iter()
-                .map(move |(taper, gradient, profile)| Effects {
-                    taper,
-                    curvature,
-                    spiral,
-                    polynomial,
-                    gradient,
-                    profile,
-                })
+    rest.into_iter().flat_map(move |(curvature, spiral, polynomial)| {
+        stiffness.into_iter().map(move |(taper, gradient, profile)| Effects {
+            taper,
+            curvature,
+            spiral,
+            polynomial,
+            gradient,
+            profile,
         })
+    })
 }
 
 /// Those that the GPU has kernels for.

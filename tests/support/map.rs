@@ -33,17 +33,14 @@ pub fn scene(
         grid: Grid {
             push_angle_deg: spread(-60.0, 70.0, push_angles),
             distance_mm: spread(3.0, 20.5, distances),
-            sweep: [
-                (Parameter::Taper, taper),
-                (Parameter::ParabolaPerMm, curvature_per_mm),
-            ]
-            .into_iter()
-            .filter_map(|(parameter, values)| {
-                let values = values?;
-                let variable = parameter.into();
-                Some(SweepAxis { variable, values })
-            })
-            .collect(),
+            sweep: [(Parameter::Taper, taper), (Parameter::ParabolaPerMm, curvature_per_mm)]
+                .into_iter()
+                .filter_map(|(parameter, values)| {
+                    let values = values?;
+                    let variable = parameter.into();
+                    Some(SweepAxis { variable, values })
+                })
+                .collect(),
         },
         table: std::sync::Arc::default(),
         name: "made-up".to_owned(),
@@ -130,15 +127,10 @@ pub fn write(path: &Path, scene: &SceneData) -> CellCounts {
         &describe(scene, &tolerances),
     )
     .unwrap();
-    let panels: Vec<Panel> = (0..scene.whisker_count())
-        .map(|index| panel(scene, index))
-        .collect();
+    let panels: Vec<Panel> = (0..scene.whisker_count()).map(|index| panel(scene, index)).collect();
     // Not always as many at once.
     let (some, others) = panels.split_at(panels.len() / 3);
     writer.write_panels(some).unwrap();
     writer.write_panels(others).unwrap();
-    writer
-        .finish(EngineCells::default(), Audit::default())
-        .unwrap()
-        .counts
+    writer.finish(EngineCells::default(), Audit::default()).unwrap().counts
 }

@@ -106,10 +106,7 @@ const CPU_SECONDS: u64 = 1200;
 fn isolate(command: &mut std::process::Command) {
     use std::os::unix::process::CommandExt;
     let set = || {
-        let limit = libc::rlimit {
-            rlim_cur: CPU_SECONDS,
-            rlim_max: CPU_SECONDS,
-        };
+        let limit = libc::rlimit { rlim_cur: CPU_SECONDS, rlim_max: CPU_SECONDS };
         // SAFETY: both calls may be made between `fork` and `exec`, and read nothing but their arguments.
         unsafe {
             for signal in [libc::SIGHUP, libc::SIGINT, libc::SIGQUIT, libc::SIGTERM] {
@@ -170,15 +167,9 @@ impl Run {
 
     /// Returns the number before `what` in the summary.
     pub fn count(&self, what: &str) -> u64 {
-        let line = self
-            .out
-            .lines()
-            .find(|line| line.trim_end().ends_with(what));
+        let line = self.out.lines().find(|line| line.trim_end().ends_with(what));
         let number = line.and_then(|line| line.split_whitespace().next());
-        number
-            .unwrap_or_else(|| panic!("no {what}: {self:?}"))
-            .parse()
-            .unwrap()
+        number.unwrap_or_else(|| panic!("no {what}: {self:?}")).parse().unwrap()
     }
 
     /// Checks that no cell is unresolved, and that no cell contradicts its row.

@@ -37,15 +37,8 @@ pub const USUAL: Effects = Effects {
 };
 
 /// Measured radii with a bulb at the base and a cylindrical part in the middle, as `[arclength, radius]` over length and base radius.
-pub const ROWS: [[f64; 2]; 7] = [
-    [0.0, 1.0],
-    [0.05, 1.06],
-    [0.2, 0.85],
-    [0.45, 0.6],
-    [0.6, 0.6],
-    [0.85, 0.25],
-    [1.0, 0.08],
-];
+pub const ROWS: [[f64; 2]; 7] =
+    [[0.0, 1.0], [0.05, 1.06], [0.2, 0.85], [0.45, 0.6], [0.6, 0.6], [0.85, 0.25], [1.0, 0.08]];
 
 /// Profile of [`ROWS`], shared by all rods: trajectories of one profile share blocks.
 static PROFILE: LazyLock<Arc<RadiusProfile>> =
@@ -63,9 +56,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
         pole: side * random.between(0.0, 0.03),
         gradient: f64::from(effects.gradient) * random.between(0.0, 1.0),
         friction: side * random.between(0.0, 0.5),
-        spiral: effects
-            .spiral
-            .then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
+        spiral: effects.spiral.then(|| [random.between(-0.8, 0.8), random.between(-0.8, 0.8)]),
         polynomial: effects.polynomial.then(|| Arc::new(polynomial(random))),
         profile: None,
         mount: 0.0,
@@ -73,10 +64,7 @@ pub fn rod(effects: Effects, random: &mut Random) -> Rod {
     // Every fourth rod is in a mount that turns. Its compliance does not change the other numbers.
     let mut mount = random.clone();
     let turns = f64::from(mount.unit() < 0.25);
-    let rod = Rod {
-        mount: turns * mount.between(0.0, 0.2),
-        ..rod
-    };
+    let rod = Rod { mount: turns * mount.between(0.0, 0.2), ..rod };
     if effects.profile {
         return Rod {
             taper: 1.0 - ROWS[ROWS.len() - 1][1],

@@ -27,23 +27,14 @@ fn gauss(panels: usize) -> Vec<[f64; 2]> {
 
 /// Angles at which the moment of the base jumps or turns, in the order of time: events, and the ends of the strokes of `sweep`.
 fn breaks(found: &Texture, sweep: &AngleCourse) -> Vec<f64> {
-    let events = found
-        .events
-        .iter()
-        .map(|event| (event.time_s, event.angle_deg));
-    let times = sweep
-        .times_s()
-        .windows(3)
-        .zip(sweep.angles_deg().windows(3));
+    let events = found.events.iter().map(|event| (event.time_s, event.angle_deg));
+    let times = sweep.times_s().windows(3).zip(sweep.angles_deg().windows(3));
     let turns = times.filter(|(_, angles)| (angles[1] - angles[0]) * (angles[2] - angles[1]) < 0.0);
     let turns = turns.map(|(time, angles)| (time[1], angles[1]));
     let mut all: Vec<(f64, f64)> = events.chain(turns).collect();
     all.sort_by(|a, b| a.0.total_cmp(&b.0));
     let last = sweep.angles_deg().last().copied();
-    all.into_iter()
-        .map(|(_, angle)| angle)
-        .chain(last)
-        .collect()
+    all.into_iter().map(|(_, angle)| angle).chain(last).collect()
 }
 
 /// The work of the base is what the whisker stores at the end, and what its detachments lose.
@@ -59,11 +50,7 @@ fn the_work_of_the_base_is_stored_or_lost() {
         for to in breaks(&first, &sweep) {
             // At and next to a fold the moment is a smooth function of `u`, where the angle is `from + span u^2 (3 - 2 u)`.
             let span: f64 = to - from;
-            let panels = if span == 0.0 {
-                0
-            } else {
-                1 + (3.0 * span.abs()) as usize
-            };
+            let panels = if span == 0.0 { 0 } else { 1 + (3.0 * span.abs()) as usize };
             for [u, weight] in gauss(panels) {
                 angles.push(from + span * u * u * (3.0 - 2.0 * u));
                 weights.push(span.to_radians() * 6.0 * u * (1.0 - u) * weight);
@@ -74,14 +61,8 @@ fn the_work_of_the_base_is_stored_or_lost() {
         weights.push(0.0);
         let found = texture(&scene.whisker, &surface, &course(&angles)).unwrap();
         assert_eq!(kinds(&found), kinds(&first), "{name}");
-        let moments = found
-            .samples
-            .iter()
-            .map(|sample| sample.base_moment_nnm.unwrap());
-        let work: f64 = moments
-            .zip(&weights)
-            .map(|(moment, weight)| moment * weight)
-            .sum();
+        let moments = found.samples.iter().map(|sample| sample.base_moment_nnm.unwrap());
+        let work: f64 = moments.zip(&weights).map(|(moment, weight)| moment * weight).sum();
         let energies = || found.samples.iter().map(|sample| sample.energy_nj.unwrap());
         let (stored, lost) = (energies().next_back().unwrap(), found.lost_nj());
         let largest = energies().fold(lost, f64::max);

@@ -18,19 +18,12 @@ fn the_state_is_history() {
     let part = texture(&cone.whisker, &surface, &course(&up)).unwrap();
     assert_eq!(all.samples[..up.len()], part.samples);
     assert_eq!(all.events[..part.events.len()], part.events);
-    let slips = part
-        .events
-        .iter()
-        .filter(|event| event.event == WhiskEventKind::SlipOff)
-        .count();
+    let slips = part.events.iter().filter(|event| event.event == WhiskEventKind::SlipOff).count();
     assert!(slips > 3, "{slips}");
     let [release, touch] = all.events[part.events.len()..] else {
         panic!("{:?}", &all.events[part.events.len()..]);
     };
-    assert_eq!(
-        (release.event, release.side),
-        (WhiskEventKind::Release, Side::Cb)
-    );
+    assert_eq!((release.event, release.side), (WhiskEventKind::Release, Side::Cb));
     assert_eq!((touch.event, touch.side), (WhiskEventKind::Touch, Side::Cf));
     // The asperity before the one that held it is now the next one on CF.
     assert_eq!(touch.asperity.unwrap() + 1, release.asperity.unwrap());
@@ -53,10 +46,7 @@ fn first_touch(scene: &Scene, surface: &Surface, side: Side, asperity: usize) ->
 fn a_detached_whisker_lies_on_the_first_asperity_that_holds_it() {
     for (name, distance_mm) in [("texture_cone", 14.6866), ("texture_hair", 14.538)] {
         let scene = scene(name);
-        let surface = Surface {
-            distance_mm,
-            ..scene.surface.unwrap()
-        };
+        let surface = Surface { distance_mm, ..scene.surface.unwrap() };
         let pole = Pole::smooth(1e-3 * surface.asperity_radius_um);
         let sweep = AngleCourse::sine(25.0, 0.2, 5.0, 200.0).unwrap();
         let found = texture(&scene.whisker, &surface, &sweep).unwrap();
@@ -90,9 +80,6 @@ fn a_detached_whisker_lies_on_the_first_asperity_that_holds_it() {
             }
         }
         assert!(checked[0] > 3, "{name}: {checked:?}");
-        assert!(
-            name == "texture_hair" || checked[1] > 3,
-            "{name}: {checked:?}"
-        );
+        assert!(name == "texture_hair" || checked[1] > 3, "{name}: {checked:?}");
     }
 }

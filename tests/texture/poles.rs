@@ -15,9 +15,7 @@ fn one_asperity_is_one_pole() {
     let rest = Rest::new(&cone.whisker.rod(&pole, Side::Cb));
     let length = cone.whisker.length_mm;
     let distance = rest.distance_of_pole(SINGLE.distance_mm / length) * length;
-    let angles: Vec<f64> = (0..=120)
-        .map(|i| 40.0 * (f64::from(i) / 19.0).sin() - 10.0)
-        .collect();
+    let angles: Vec<f64> = (0..=120).map(|i| 40.0 * (f64::from(i) / 19.0).sin() - 10.0).collect();
     let found = texture(&cone.whisker, &SINGLE, &course(&angles)).unwrap();
     let touch = found.events[0].angle_deg;
     let shifted: Vec<f64> = angles.iter().map(|angle| angle - touch).collect();
@@ -25,11 +23,7 @@ fn one_asperity_is_one_pole() {
     assert_eq!(found.reached, 1);
     assert_eq!(
         kinds(&found),
-        wanted
-            .events
-            .iter()
-            .map(|event| (event.event, event.side))
-            .collect::<Vec<_>>()
+        wanted.events.iter().map(|event| (event.event, event.side)).collect::<Vec<_>>()
     );
     assert!(kinds(&found).contains(&(WhiskEventKind::SlipOff, Side::Cf)));
     for (event, other) in found.events.iter().zip(&wanted.events) {
@@ -46,10 +40,7 @@ fn one_asperity_is_one_pole() {
         ] {
             let (value, other) = (value.unwrap(), other.unwrap());
             // Measured: 6e-14. Next to the fold a push that differs by 1e-14 degrees would change a force by 1e-8; no sample is there.
-            assert!(
-                (value - other).abs() <= 1e-11 * other.abs(),
-                "{value} {other}"
-            );
+            assert!((value - other).abs() <= 1e-11 * other.abs(), "{value} {other}");
         }
     }
     // Measured: no difference.
@@ -59,9 +50,7 @@ fn one_asperity_is_one_pole() {
 /// Geometry of the angle: a straight whisker touches a point at `x` where its direction is that of the point.
 #[test]
 fn a_straight_whisker_touches_points_in_their_direction() {
-    let straight = scene("texture_cone")
-        .with(Parameter::ParabolaPerMm, 0.0)
-        .unwrap();
+    let straight = scene("texture_cone").with(Parameter::ParabolaPerMm, 0.0).unwrap();
     let points = Surface {
         asperity_radius_um: 0.0,
         spacing_um: 4000.0,
@@ -70,24 +59,15 @@ fn a_straight_whisker_touches_points_in_their_direction() {
         ..SINGLE
     };
     let found = texture(&straight.whisker, &points, &course(&[-20.0, 40.0])).unwrap();
-    let touches: Vec<_> = found
-        .events
-        .iter()
-        .filter(|event| event.event == WhiskEventKind::Touch)
-        .collect();
+    let touches: Vec<_> =
+        found.events.iter().filter(|event| event.event == WhiskEventKind::Touch).collect();
     let wanted = [-4.0, 0.0, 4.0].map(|x: f64| (x / 15.0).atan().to_degrees());
     assert_eq!(touches.len(), 3);
     for (touch, wanted) in touches.iter().zip(wanted) {
-        assert!(
-            (touch.angle_deg - wanted).abs() < 1e-12,
-            "{touch:?} {wanted}"
-        );
+        assert!((touch.angle_deg - wanted).abs() < 1e-12, "{touch:?} {wanted}");
         // The tip continues the straight line.
         let tip = 16.4 * wanted.to_radians().sin();
-        assert!(
-            (touch.tip_x_mm.unwrap() - tip).abs() < 1e-12,
-            "{touch:?} {tip}"
-        );
+        assert!((touch.tip_x_mm.unwrap() - tip).abs() < 1e-12, "{touch:?} {tip}");
     }
 }
 
@@ -95,35 +75,19 @@ fn a_straight_whisker_touches_points_in_their_direction() {
 #[test]
 fn far_asperities_are_single_poles() {
     let cone = scene("texture_cone");
-    let both = Surface {
-        spacing_um: 4000.0,
-        length_mm: 4.0,
-        distance_mm: 15.3,
-        ..SINGLE
-    };
+    let both = Surface { spacing_um: 4000.0, length_mm: 4.0, distance_mm: 15.3, ..SINGLE };
     let angles = [-15.0, 20.0, -30.0];
     let found = texture(&cone.whisker, &both, &course(&angles)).unwrap();
     assert_eq!(found.reached, 2);
     use WhiskEventKind::{PullOff, SlipOff, Touch};
     let ends = |kind: &WhiskEventKind| matches!(kind, SlipOff | PullOff);
     let kinds: Vec<WhiskEventKind> = found.events.iter().map(|event| event.event).collect();
-    assert!(
-        kinds.iter().step_by(2).all(|kind| *kind == Touch),
-        "{kinds:?}"
-    );
+    assert!(kinds.iter().step_by(2).all(|kind| *kind == Touch), "{kinds:?}");
     assert!(kinds.iter().skip(1).step_by(2).all(ends), "{kinds:?}");
-    let places: Vec<_> = found
-        .events
-        .iter()
-        .map(|event| event.asperity.unwrap())
-        .collect();
+    let places: Vec<_> = found.events.iter().map(|event| event.asperity.unwrap()).collect();
     assert_eq!(places, [0, 0, 1, 1, 1, 1, 0, 0]);
     // Mirrored asperities have the same distance from the base, so the same push ends on each side.
-    let pushes: Vec<f64> = found
-        .events
-        .iter()
-        .filter_map(|event| event.push_angle_deg)
-        .collect();
+    let pushes: Vec<f64> = found.events.iter().filter_map(|event| event.push_angle_deg).collect();
     for (one, other) in [(1, 3), (5, 7)] {
         assert!((pushes[one] - pushes[other]).abs() < 1e-12, "{pushes:?}");
     }
@@ -141,26 +105,11 @@ fn far_asperities_are_single_poles() {
 #[test]
 fn a_whisker_without_asperities_in_reach_is_free() {
     let cone = scene("texture_cone");
-    let wide = Surface {
-        spacing_um: 30_000.0,
-        length_mm: 30.0,
-        ..SINGLE
-    };
-    for surface in [
-        wide,
-        Surface {
-            distance_mm: 16.4,
-            ..SINGLE
-        },
-    ] {
+    let wide = Surface { spacing_um: 30_000.0, length_mm: 30.0, ..SINGLE };
+    for surface in [wide, Surface { distance_mm: 16.4, ..SINGLE }] {
         let found = texture(&cone.whisker, &surface, &course(&[-90.0, 90.0, 0.0])).unwrap();
         assert_eq!((found.reached, found.events.len()), (0, 0));
-        assert!(
-            found
-                .samples
-                .iter()
-                .all(|sample| sample.phase == TexturePhase::Free)
-        );
+        assert!(found.samples.iter().all(|sample| sample.phase == TexturePhase::Free));
         let last = found.samples[2];
         // At the angle 0, the chord of the tip is normal to the surface.
         let reach = reach_mm(&cone.whisker, &Pole::smooth(0.0), Side::Cb);

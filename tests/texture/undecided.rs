@@ -13,50 +13,24 @@ use whiskmap::whisk::WhiskEventKind;
 fn what_the_model_does_not_determine_has_a_reason() {
     let hair = scene("texture_hair");
     // Beside its base a hair bends by more than a right angle: its free part comes down onto the surface behind the contact.
-    let near = Surface {
-        distance_mm: 6.0,
-        spacing_um: 12_000.0,
-        length_mm: 12.0,
-        ..SINGLE
-    };
+    let near = Surface { distance_mm: 6.0, spacing_um: 12_000.0, length_mm: 12.0, ..SINGLE };
     let angles: Vec<f64> = (-60..=60).map(f64::from).collect();
     let found = texture(&hair.whisker, &near, &course(&angles)).unwrap();
-    let first = found
-        .samples
-        .iter()
-        .position(|sample| sample.reason.is_some())
-        .unwrap();
-    assert!(
-        found.samples[..first]
-            .iter()
-            .all(|sample| sample.energy_nj.is_some())
-    );
+    let first = found.samples.iter().position(|sample| sample.reason.is_some()).unwrap();
+    assert!(found.samples[..first].iter().all(|sample| sample.energy_nj.is_some()));
     for sample in &found.samples[first..] {
         assert_eq!(sample.phase, TexturePhase::Undecided);
         assert_eq!(sample.reason, Some(NoTextureState::CrossesSurface));
-        assert_eq!(
-            (sample.asperity, sample.force_un, sample.tip_x_mm),
-            (None, None, None)
-        );
-        assert_eq!(
-            shape(&hair.whisker, &near, sample, 9).unwrap(),
-            Vec::<[f64; 2]>::new()
-        );
+        assert_eq!((sample.asperity, sample.force_un, sample.tip_x_mm), (None, None, None));
+        assert_eq!(shape(&hair.whisker, &near, sample, 9).unwrap(), Vec::<[f64; 2]>::new());
     }
     let last = found.events.last().unwrap();
-    assert_eq!(
-        (last.event, last.time_s),
-        (WhiskEventKind::Undecided, found.samples[first].time_s)
-    );
+    assert_eq!((last.event, last.time_s), (WhiskEventKind::Undecided, found.samples[first].time_s));
     let stays = found.stays();
     assert_eq!(stays.last().unwrap().end, Some(WhiskEventKind::Undecided));
     // Next to the tip a push ends before the resting whisker is clear of the asperity, as in `whisk`.
     let cone = scene("texture_cone");
-    let thick = Surface {
-        distance_mm: 16.18,
-        asperity_radius_um: 100.0,
-        ..SINGLE
-    };
+    let thick = Surface { distance_mm: 16.18, asperity_radius_um: 100.0, ..SINGLE };
     let found = texture(&cone.whisker, &thick, &course(&[-1.0, 0.35, 1.0])).unwrap();
     let reasons: Vec<_> = found.samples.iter().map(|sample| sample.reason).collect();
     assert_eq!(reasons, [None, Some(NoTextureState::OnAnAsperity), None]);
@@ -94,10 +68,7 @@ fn the_whole_free_part_stays_above_the_contact() {
         .build()
         .unwrap();
     let whisker = &scene.whisker;
-    let surface = Surface {
-        distance_mm: 6.3,
-        ..SINGLE
-    };
+    let surface = Surface { distance_mm: 6.3, ..SINGLE };
     let angles: Vec<f64> = (0..=350).map(|i| 50.0 - 0.2 * f64::from(i)).collect();
     let found = texture(whisker, &surface, &course(&angles)).unwrap();
     // Height of the lowest point from 3 mm beyond the contact on, above the contact.
@@ -110,28 +81,17 @@ fn the_whole_free_part_stays_above_the_contact() {
         let free = points[part(contact_mm + 3.0)..].iter().map(|[_, y]| *y);
         free.fold(f64::INFINITY, f64::min) - contact
     };
-    let crossed = found
-        .samples
-        .iter()
-        .position(|sample| sample.reason.is_some());
+    let crossed = found.samples.iter().position(|sample| sample.reason.is_some());
     let (held, undecided) = found.samples.split_at(crossed.unwrap());
     for sample in undecided {
         assert_eq!(sample.reason, Some(NoTextureState::CrossesSurface));
     }
-    let held: Vec<_> = held
-        .iter()
-        .filter(|sample| sample.asperity.is_some())
-        .collect();
+    let held: Vec<_> = held.iter().filter(|sample| sample.asperity.is_some()).collect();
     let margins: Vec<f64> = held.iter().map(|sample| margin(sample)).collect();
     assert!(margins.is_sorted_by(|one, next| one > next) && margins.len() > 10);
-    let [.., before, last] = margins[..] else {
-        panic!("{margins:?}")
-    };
+    let [.., before, last] = margins[..] else { panic!("{margins:?}") };
     // The course ends between the last sample above the line and the next one, with the tip far above it.
-    assert!(
-        last > 0.0 && last + (last - before) < 0.0,
-        "{before} {last}"
-    );
+    assert!(last > 0.0 && last + (last - before) < 0.0, "{before} {last}");
     assert!(held.last().unwrap().tip_height_mm > Some(4.0));
 }
 
@@ -142,24 +102,10 @@ fn courses_that_cannot_be_are_refused() {
     let refused = |surface: &Surface, angles: &[f64]| {
         texture(&cone.whisker, surface, &course(angles)).unwrap_err()
     };
-    assert_eq!(
-        refused(&surface, &[0.0, 91.0]),
-        TextureError::Angle {
-            index: 1,
-            angle_deg: 91.0
-        }
-    );
-    let thick = Surface {
-        asperity_radius_um: 400.0,
-        ..SINGLE
-    };
+    assert_eq!(refused(&surface, &[0.0, 91.0]), TextureError::Angle { index: 1, angle_deg: 91.0 });
+    let thick = Surface { asperity_radius_um: 400.0, ..SINGLE };
     let why = refused(&thick, &[-2.0, 1.0]);
-    let TextureError::Begin {
-        touches_deg: [cb, cf],
-        asperity: 0,
-        ..
-    } = why
-    else {
+    let TextureError::Begin { touches_deg: [cb, cf], asperity: 0, .. } = why else {
         panic!("{why}");
     };
     // Both touches are accepted as they are.
@@ -167,19 +113,11 @@ fn courses_that_cannot_be_are_refused() {
         assert!(texture(&cone.whisker, &thick, &course(&[touch, touch + 1.0])).is_ok());
     }
     // The numbers of a surface are checked when it is used.
-    let endless = Surface {
-        spacing_um: 0.0,
-        ..SINGLE
-    };
+    let endless = Surface { spacing_um: 0.0, ..SINGLE };
     let why = refused(&endless, &[0.0, 1.0]).to_string();
     assert!(why.contains("surface.spacing_um = 0: must be"), "{why}");
     // Far from the middle the whisker meets the line at a slant, and does not fit between asperities.
-    let dense = Surface {
-        spacing_um: 101.0,
-        distance_mm: 6.0,
-        length_mm: 20.0,
-        ..SINGLE
-    };
+    let dense = Surface { spacing_um: 101.0, distance_mm: 6.0, length_mm: 20.0, ..SINGLE };
     let why = refused(&dense, &[0.0, 1.0]);
     assert!(matches!(why, TextureError::Blocked { .. }), "{why}");
 }

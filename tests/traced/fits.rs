@@ -33,16 +33,11 @@ fn exact_points_give_the_curve_back() {
             assert!(
                 (found.base_mm[0] - 3.0).abs() < 1e-13 && (found.base_mm[1] + 8.0).abs() < 1e-13
             );
-            let [first, ..] = found.points_at_rest_mm(20.0)[..] else {
-                panic!("{found:?}")
-            };
+            let [first, ..] = found.points_at_rest_mm(20.0)[..] else { panic!("{found:?}") };
             assert!(first[0].abs() < 1e-13 && first[1].abs() < 1e-13);
         }
     }
-    assert!(
-        worst[0] < 2e-12 && worst[1] < 2e-13 && worst[2] < 2e-13,
-        "{worst:?}"
-    );
+    assert!(worst[0] < 2e-12 && worst[1] < 2e-13 && worst[2] < 2e-13, "{worst:?}");
 }
 
 /// Cross-validation finds the degree of noisy points. A term is too small to be found if it moves the curve by less than the noise.
@@ -62,10 +57,7 @@ fn noisy_points_give_the_degree_back() {
         for seed in 0..10 {
             let points = points(&rod, 20.0, 120, 0.03, &mut Random::new(seed));
             let shape = TracedShape::fit(points, None).unwrap();
-            assert!(
-                shape.is_degree_chosen && shape.degree >= degree,
-                "{shape:?}"
-            );
+            assert!(shape.is_degree_chosen && shape.degree >= degree, "{shape:?}");
             assert!((shape.rms_mm / 0.03 - 1.0).abs() < 0.25, "{}", shape.rms_mm);
             assert!((shape.length_mm / 20.0 - 1.0).abs() < 0.01);
             found.push(shape.degree == degree);
@@ -82,9 +74,7 @@ fn only_the_shape_counts() {
     let rod = bent(SHAPES[3]);
     let points = points(&rod, 20.0, 60, 0.05, &mut Random::new(5));
     let fit = TracedShape::fit(points.clone(), Some(3)).unwrap();
-    let moved = points
-        .iter()
-        .map(|[x, y]| [300.0 - 10.0 * y, 10.0 * x - 70.0]);
+    let moved = points.iter().map(|[x, y]| [300.0 - 10.0 * y, 10.0 * x - 70.0]);
     let other = TracedShape::fit(moved.collect(), Some(3)).unwrap();
     for (coefficient, other) in fit.coefficients().iter().zip(other.coefficients()) {
         assert!((coefficient - other).abs() < 1e-13, "{coefficient} {other}");
@@ -115,10 +105,7 @@ fn more_terms_leave_smaller_distances() {
 fn distances_are_those_from_the_curve() {
     let points = points(&bent(SHAPES[3]), 20.0, 40, 0.1, &mut Random::new(3));
     let shape = TracedShape::fit(points, Some(3)).unwrap();
-    let rod = Rod {
-        polynomial: Some(shape.curvature.into()),
-        ..Rod::default()
-    };
+    let rod = Rod { polynomial: Some(shape.curvature.into()), ..Rod::default() };
     let rest = Rest::new(&rod);
     // Points beyond an end have their feet on the curve's continuation.
     let knots = (-40..=4040).map(|i| f64::from(i) / 4000.0);
@@ -139,19 +126,11 @@ fn distances_are_those_from_the_curve() {
     let at_rest = shape.points_at_rest_mm(shape.length_mm);
     let distances = at_rest.iter().map(|point| distance((*point).into()));
     let distances: Vec<f64> = distances.collect();
-    let squares = distances
-        .iter()
-        .map(|distance| distance * distance)
-        .sum::<f64>();
+    let squares = distances.iter().map(|distance| distance * distance).sum::<f64>();
     let rms = (squares / distances.len() as f64).sqrt();
-    let farthest = distances
-        .iter()
-        .fold(0.0_f64, |most, distance| distance.max(most));
+    let farthest = distances.iter().fold(0.0_f64, |most, distance| distance.max(most));
     assert!((rms / shape.rms_mm - 1.0).abs() < 1e-5, "{rms} {shape:?}");
-    assert!(
-        (farthest / shape.farthest_mm - 1.0).abs() < 1e-4,
-        "{farthest}"
-    );
+    assert!((farthest / shape.farthest_mm - 1.0).abs() < 1e-4, "{farthest}");
 }
 
 /// A reflection of the points reflects the curve. The frame of a longer whisker scales the points.
@@ -165,10 +144,7 @@ fn reflected_and_longer_shapes_have_the_same_distances() {
     let length = fit.length_mm;
     let [same, twice] = [length, 2.0 * length].map(|length| fit.points_at_rest_mm(length));
     for (coordinate, other) in same.iter().flatten().zip(twice.iter().flatten()) {
-        assert!(
-            (2.0 * coordinate - other).abs() < 1e-12,
-            "{coordinate} {other}"
-        );
+        assert!((2.0 * coordinate - other).abs() < 1e-12, "{coordinate} {other}");
     }
 }
 

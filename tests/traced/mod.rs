@@ -34,10 +34,7 @@ pub fn points(
 
 /// A rod with this curvature at rest.
 pub fn bent(legendre: [f64; 7]) -> Rod {
-    Rod {
-        polynomial: Some(CurvaturePolynomial::new(legendre).into()),
-        ..Rod::default()
-    }
+    Rod { polynomial: Some(CurvaturePolynomial::new(legendre).into()), ..Rod::default() }
 }
 
 /// A whisker at rest, as a rod.

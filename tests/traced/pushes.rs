@@ -30,13 +30,7 @@ fn apart(scene: &Scene, one: &Whisker, other: &Whisker) -> f64 {
 
 /// The whisker with its shape traced exactly at 100 points.
 fn traced(whisker: &Whisker, degree: usize) -> Whisker {
-    let points = points(
-        &resting(whisker),
-        whisker.length_mm,
-        100,
-        0.0,
-        &mut Random::new(1),
-    );
+    let points = points(&resting(whisker), whisker.length_mm, 100, 0.0, &mut Random::new(1));
     let shape = TracedShape::fit(points, Some(degree)).unwrap();
     Whisker {
         curvature: None,
@@ -52,10 +46,7 @@ fn a_traced_spiral_detaches_as_the_spiral() {
     let scene = cone();
     let whisker = Whisker {
         curvature: None,
-        euler_spiral: Some(EulerSpiral {
-            per_mm: 0.05,
-            per_mm2: -0.005,
-        }),
+        euler_spiral: Some(EulerSpiral { per_mm: 0.05, per_mm2: -0.005 }),
         ..scene.whisker.clone()
     };
     for degree in [1, 4] {
@@ -70,17 +61,11 @@ fn a_traced_spiral_detaches_as_the_spiral() {
 fn a_traced_parabola_detaches_as_the_parabola() {
     let scene = cone();
     let whisker = Whisker {
-        curvature: Some(Curvature {
-            parabola_per_mm: 0.02,
-            vertex_mm: 0.0,
-        }),
+        curvature: Some(Curvature { parabola_per_mm: 0.02, vertex_mm: 0.0 }),
         ..scene.whisker.clone()
     };
     let errors = [2, 4, 6].map(|degree| apart(&scene, &whisker, &traced(&whisker, degree)));
-    assert!(
-        errors[0] < 0.04 && errors[1] < 8e-4 && errors[2] < 1.6e-5,
-        "{errors:?}"
-    );
+    assert!(errors[0] < 0.04 && errors[1] < 8e-4 && errors[2] < 1.6e-5, "{errors:?}");
 }
 
 /// A whisker twice as long, at a pole twice as thick and twice as far away, has the same angles: the shape is scaled with the length.

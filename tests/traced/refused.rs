@@ -61,12 +61,7 @@ fn points_are_read_from_the_scene_and_from_a_file() {
     // What is kept with a map stands for itself: points, degree, coefficients and length.
     fs::remove_dir_all(folder.path()).unwrap();
     let text = read.to_toml();
-    for key in [
-        "points = [\n",
-        "degree = 0",
-        "curvature = [",
-        "length_mm = ",
-    ] {
+    for key in ["points = [\n", "degree = 0", "curvature = [", "length_mm = "] {
         assert!(text.contains(key), "{text}");
     }
     let again = Scene::parse(&text, "scene.toml").unwrap();
@@ -85,18 +80,9 @@ fn points_that_are_refused() {
         format!("points = {points:?}")
     };
     for (rest, why) in [
-        (
-            "points = \"no.csv\"".to_owned(),
-            "only a scene file may name a CSV file",
-        ),
-        (
-            "points = 5".to_owned(),
-            "expected the name of a CSV file or a list of [x_mm, y_mm]",
-        ),
-        (
-            "points = [[0, 0], [1]]".to_owned(),
-            "invalid length 1, expected a list of 2 numbers",
-        ),
+        ("points = \"no.csv\"".to_owned(), "only a scene file may name a CSV file"),
+        ("points = 5".to_owned(), "expected the name of a CSV file or a list of [x_mm, y_mm]"),
+        ("points = [[0, 0], [1]]".to_owned(), "invalid length 1, expected a list of 2 numbers"),
         ("degree = 2".to_owned(), "missing field `points`"),
         (
             "points = []".to_owned(),
@@ -106,18 +92,9 @@ fn points_that_are_refused() {
             format!("points = {:?}\ndegree = 4", arc(7)),
             "must be at least 8 points for the degree 4, are 7",
         ),
-        (
-            format!("points = {:?}\ndegree = 7", arc(12)),
-            "degree = 7: must be between 0 and 6",
-        ),
-        (
-            format!("points = {:?}\ndegree = -1", arc(12)),
-            "degree = -1: must be between 0 and 6",
-        ),
-        (
-            format!("points = {:?}\ndegree = 1.5", arc(12)),
-            "invalid type: floating point",
-        ),
+        (format!("points = {:?}\ndegree = 7", arc(12)), "degree = 7: must be between 0 and 6"),
+        (format!("points = {:?}\ndegree = -1", arc(12)), "degree = -1: must be between 0 and 6"),
+        (format!("points = {:?}\ndegree = 1.5", arc(12)), "invalid type: floating point"),
         (
             format!("points = {:?}\ncurvature = [1.1]", arc(12)),
             "must be left out, or be the coefficients of the fit",
@@ -126,22 +103,13 @@ fn points_that_are_refused() {
             points(&|all| all[4][1] = f64::NAN).replace("NaN", "nan"),
             "points[4]: x_mm and y_mm must be numbers",
         ),
-        (
-            points(&|all| all[4] = all[3]),
-            "points[4]: must differ from the point before it",
-        ),
-        (
-            points(&|all| all.swap(5, 7)),
-            "points[6]: must not fold back: it is",
-        ),
+        (points(&|all| all[4] = all[3]), "points[4]: must differ from the point before it"),
+        (points(&|all| all.swap(5, 7)), "points[6]: must not fold back: it is"),
         (
             points(&|all| all.iter_mut().step_by(2).for_each(|point| point[1] += 1.4)),
             "must lie along a smooth curve: their rms distance",
         ),
-        (
-            points(&|all| all.push([0.5, 0.5])),
-            "points[12]: must not fold back",
-        ),
+        (points(&|all| all.push([0.5, 0.5])), "points[12]: must not fold back"),
     ] {
         let message = refusal(&scene(&rest));
         assert!(message.contains(why), "{rest}: {message}");
@@ -183,43 +151,25 @@ fn errors_name_the_line_of_the_file() {
             format!("x_mm,z_mm\n{good}"),
             "points.csv:1: found x_mm, z_mm; needed x_mm, y_mm, each once",
         ),
-        (
-            format!("x_mm,y_mm\n{good}20,far\n"),
-            "points.csv:14: y_mm = far: must be a number",
-        ),
-        (
-            format!("# a remark\n\nx_mm,y_mm\n{good}1,0\n"),
-            "line 16: must not fold back",
-        ),
+        (format!("x_mm,y_mm\n{good}20,far\n"), "points.csv:14: y_mm = far: must be a number"),
+        (format!("# a remark\n\nx_mm,y_mm\n{good}1,0\n"), "line 16: must not fold back"),
     ] {
         fs::write(folder.path().join("points.csv"), &csv).unwrap();
         let message = Scene::read(&path).unwrap_err().to_string();
         assert!(message.contains(why), "{message}");
-        assert!(
-            message.contains("whisker.rest.points = \"points.csv\""),
-            "{message}"
-        );
+        assert!(message.contains("whisker.rest.points = \"points.csv\""), "{message}");
     }
-    let unused = format!("x_mm,y_mm\n{good}")
-        .replace("\n", ",7\n")
-        .replacen(",7", ",day", 1);
+    let unused = format!("x_mm,y_mm\n{good}").replace("\n", ",7\n").replacen(",7", ",day", 1);
     fs::write(folder.path().join("points.csv"), unused).unwrap();
     let scene = Scene::read(&path).unwrap();
-    assert!(
-        scene.notes()[0].ends_with("columns that are not used: day"),
-        "{:?}",
-        scene.notes()
-    );
+    assert!(scene.notes()[0].ends_with("columns that are not used: day"), "{:?}", scene.notes());
 }
 
 /// Points in pixels have no scale: the scene must give the length.
 #[test]
 fn a_traced_length_of_no_whisker_must_be_given() {
     let scaled = |scale: f64| {
-        let points: Vec<[f64; 2]> = arc(12)
-            .iter()
-            .map(|point| point.map(|x| scale * x))
-            .collect();
+        let points: Vec<[f64; 2]> = arc(12).iter().map(|point| point.map(|x| scale * x)).collect();
         scene(&format!("points = {points:?}"))
     };
     let why = refusal(&scaled(39.25));

@@ -18,9 +18,7 @@ fn every_branch(count: usize, check: impl Fn(&str, &Branch, &[BranchPoint], f64)
                 let points = branch.points(count).unwrap();
                 let push = traced.side.sign() * end.push_angle_deg.unwrap();
                 check(&case, branch, &points, push);
-                let kind = match points
-                    .iter()
-                    .find(|point| point.mark == Some(BranchMark::SlipOff))
+                let kind = match points.iter().find(|point| point.mark == Some(BranchMark::SlipOff))
                 {
                     Some(_) => DetachmentKind::SlipOff,
                     None => DetachmentKind::PullOff,
@@ -60,20 +58,14 @@ fn the_stable_part_has_the_states_of_the_branch() {
 #[test]
 fn det_changes_its_sign_at_the_fold_and_only_there() {
     every_branch(100, |case, _, points, end| {
-        let fold = points
-            .iter()
-            .position(|point| point.mark == Some(BranchMark::SlipOff));
+        let fold = points.iter().position(|point| point.mark == Some(BranchMark::SlipOff));
         let stable = &points[..fold.unwrap_or(points.len())];
         assert!(stable.iter().all(|p| p.stable && p.det > 0.0), "{case}");
         if let Some(fold) = fold {
             let unstable = &points[fold + 1..points.len() - 1];
             assert!(unstable.iter().all(|p| !p.stable && p.det < 0.0), "{case}");
             let scale = points.iter().fold(0.0_f64, |most, p| most.max(p.det.abs()));
-            assert!(
-                points[fold].det.abs() < 1e-9 * scale,
-                "{case}: {:?}",
-                points[fold]
-            );
+            assert!(points[fold].det.abs() < 1e-9 * scale, "{case}: {:?}", points[fold]);
         }
         let last = fold.unwrap_or(points.len() - 1);
         let most = points
@@ -91,10 +83,7 @@ fn a_branch_begins_at_first_touch_and_marks_its_end() {
     every_branch(20, |case, _, points, _| {
         let (first, last) = (points[0], points[points.len() - 1]);
         assert_eq!(first.mark, Some(BranchMark::FirstTouch), "{case}");
-        assert!(
-            first.push_angle_deg == 0.0 && first.force_un == 0.0,
-            "{case}: {first:?}"
-        );
+        assert!(first.push_angle_deg == 0.0 && first.force_un == 0.0, "{case}: {first:?}");
         match last.mark {
             Some(BranchMark::Tip | BranchMark::PullOff) => {
                 assert!((last.arc_length_mm - 20.0).abs() < 1e-7, "{case}: {last:?}")
@@ -118,13 +107,9 @@ fn points_are_evenly_spaced() {
                 let case = format!("tip {tip} a {a} {pole:?} at {distance} {side:?}");
                 let branch = Branch::new(&whisker(tip, a), &pole, side, distance).unwrap();
                 let points = branch.points(2000).unwrap();
-                let chords: Vec<f64> = points
-                    .windows(2)
-                    .map(|pair| chord(pair[0], pair[1]))
-                    .collect();
-                let fold = points
-                    .iter()
-                    .position(|point| point.mark == Some(BranchMark::SlipOff));
+                let chords: Vec<f64> =
+                    points.windows(2).map(|pair| chord(pair[0], pair[1])).collect();
+                let fold = points.iter().position(|point| point.mark == Some(BranchMark::SlipOff));
                 let fold = fold.unwrap_or(chords.len());
                 for part in [&chords[..fold], &chords[fold..]] {
                     let shortest = part.iter().copied().fold(f64::INFINITY, f64::min);
@@ -154,10 +139,7 @@ fn states_reproduce_points() {
             let miss = (reading.arc_length_mm - point.arc_length_mm).abs();
             assert!(miss < 1e-9, "{case}: {point:?} {reading:?}");
             let pole = branch.row().pole(push);
-            assert!(
-                state.full.map.pole.distance(pole) < 1e-12,
-                "{case}: {point:?}"
-            );
+            assert!(state.full.map.pole.distance(pole) < 1e-12, "{case}: {point:?}");
         }
     });
 }
@@ -190,10 +172,7 @@ fn missing_states_have_a_reason() {
     let pulled = branch.state(-1.7, true).unwrap_err().to_string();
     assert_eq!(pulled, "pulled off at -90.346386911 deg");
     let none = branch.state(-1.0, false).unwrap_err().to_string();
-    assert_eq!(
-        none,
-        "no unstable state: pulled off at -90.346386911 deg, before any fold"
-    );
+    assert_eq!(none, "no unstable state: pulled off at -90.346386911 deg, before any fold");
     let far = Branch::new(&whisker(1.5, 0.0), &POLE, Side::Cb, 20.5).unwrap_err();
     assert_eq!(
         far.to_string(),

@@ -23,9 +23,8 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
             let Some(distance) = corner.distance_mm else {
                 assert_eq!(corner.reason, Some(NoCorner::AlwaysSlipsOff));
                 // No push ends at the tip then.
-                let distances: Vec<f64> = (1..40)
-                    .map(|i| pole.radius_mm + 0.5 * f64::from(i))
-                    .collect();
+                let distances: Vec<f64> =
+                    (1..40).map(|i| pole.radius_mm + 0.5 * f64::from(i)).collect();
                 let ends = curve(&whisker, &pole, side, &distances);
                 assert!(
                     ends.iter().all(|end| end.kind != DetachmentKind::PullOff),
@@ -53,10 +52,7 @@ fn a_curve_is_the_end_of_each_branch() {
     let whisker = whisker(6.0, 0.04);
     let distances = [3.0, 8.0, 13.0, 18.0];
     for side in Side::BOTH {
-        for (distance, end) in distances
-            .iter()
-            .zip(curve(&whisker, &POLE, side, &distances))
-        {
+        for (distance, end) in distances.iter().zip(curve(&whisker, &POLE, side, &distances)) {
             let branch = Branch::new(&whisker, &POLE, side, *distance).unwrap();
             let points = branch.points(50).unwrap();
             let last = points.iter().rfind(|point| point.stable).unwrap();
@@ -89,15 +85,9 @@ fn a_curve_is_the_end_of_each_branch() {
 #[test]
 fn rows_out_of_reach_have_no_values() {
     let ends = curve(&whisker(1.5, 0.0), &POLE, Side::Cb, &[19.99, 20.01]);
-    assert_eq!(
-        [ends[0].kind, ends[1].kind],
-        [DetachmentKind::PullOff, DetachmentKind::OutOfReach]
-    );
+    assert_eq!([ends[0].kind, ends[1].kind], [DetachmentKind::PullOff, DetachmentKind::OutOfReach]);
     assert!(ends[0].residual.unwrap() < 1e-12);
-    assert_eq!(
-        (ends[1].push_angle_deg, ends[1].force_un, ends[1].residual),
-        (None, None, None)
-    );
+    assert_eq!((ends[1].push_angle_deg, ends[1].force_un, ends[1].residual), (None, None, None));
 }
 
 /// Strongly bent cylinders with their vertex between base and tip have level curves in several pieces, and folds at push angles
@@ -108,10 +98,8 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
     for (a_length, vertex) in [(1.14, 0.71), (2.56, 0.47), (1.86, 0.5), (0.8, -1.0)] {
         for tip in [30.0, 12.0, 1.5] {
             let mut whisker = whisker(tip, a_length / 20.0);
-            whisker.curvature = Some(Curvature {
-                parabola_per_mm: a_length / 20.0,
-                vertex_mm: 20.0 * vertex,
-            });
+            whisker.curvature =
+                Some(Curvature { parabola_per_mm: a_length / 20.0, vertex_mm: 20.0 * vertex });
             let distances: Vec<f64> = (1..20).map(|i| 0.7 * f64::from(i)).collect();
             for side in Side::BOTH {
                 let places: Vec<f64> = distances.iter().map(|distance| distance / 20.0).collect();
@@ -129,13 +117,8 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
                     let last = points.iter().rfind(|point| point.stable).unwrap();
                     let case =
                         format!("tip {tip} A L {a_length} vertex {vertex} {side:?} at {distance}");
-                    let push = end
-                        .push_angle_deg
-                        .unwrap_or_else(|| panic!("{case}: {end:?}"));
-                    assert!(
-                        (push - last.push_angle_deg).abs() < 1e-8,
-                        "{case}: {push} {last:?}"
-                    );
+                    let push = end.push_angle_deg.unwrap_or_else(|| panic!("{case}: {end:?}"));
+                    assert!((push - last.push_angle_deg).abs() < 1e-8, "{case}: {push} {last:?}");
                     compared += 1;
                     several += usize::from(crossings.len() > 1);
                 }
@@ -150,10 +133,7 @@ fn the_branch_decides_where_rows_leave_the_sheet_more_than_once() {
 #[test]
 fn ends_do_not_depend_on_the_other_whiskers() {
     let bent = Whisker {
-        curvature: Some(Curvature {
-            parabola_per_mm: 1.14 / 20.0,
-            vertex_mm: 14.2,
-        }),
+        curvature: Some(Curvature { parabola_per_mm: 1.14 / 20.0, vertex_mm: 14.2 }),
         ..whisker(30.0, 0.0)
     };
     let measured = Whisker {
@@ -163,11 +143,7 @@ fn ends_do_not_depend_on_the_other_whiskers() {
     let others = [bent, measured].map(|whisker| (whisker, POLE));
     let place = scene("cone").first_whisker().place;
     let swept = everything().step_by(5).chain(others);
-    let swept = swept.map(|(whisker, pole)| SweptWhisker {
-        place: place.clone(),
-        whisker,
-        pole,
-    });
+    let swept = swept.map(|(whisker, pole)| SweptWhisker { place: place.clone(), whisker, pole });
     let swept: Vec<SweptWhisker> = swept.collect();
     let both = |swept| Side::BOTH.map(|side| SweptSide { swept, side });
     let sides: Vec<SweptSide> = swept.iter().map(Ok).flat_map(both).collect();
@@ -185,13 +161,7 @@ fn ends_do_not_depend_on_the_other_whiskers() {
         let all = detachments(whisker, pole, *side, &distances, &[]);
         for (first, all) in first.iter().zip(all) {
             let snaps_deg = all.end.snaps_deg;
-            assert_eq!(
-                Detachment {
-                    snaps_deg,
-                    ..*first
-                },
-                all.end
-            );
+            assert_eq!(Detachment { snaps_deg, ..*first }, all.end);
         }
     }
     let is_followed = |side: &&SweptSide| {

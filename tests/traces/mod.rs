@@ -15,10 +15,8 @@ use whiskmap::trace::{Branch, Detachment, NoState, curve};
 /// Whisker of 20 mm length with a base radius of 30 um.
 fn whisker(tip_radius_um: f64, a_per_mm: f64) -> Whisker {
     Whisker {
-        curvature: (a_per_mm > 0.0).then_some(Curvature {
-            parabola_per_mm: a_per_mm,
-            vertex_mm: 0.0,
-        }),
+        curvature: (a_per_mm > 0.0)
+            .then_some(Curvature { parabola_per_mm: a_per_mm, vertex_mm: 0.0 }),
         ..Whisker::cone(20.0, [30.0, tip_radius_um], 3.0)
     }
 }
@@ -28,20 +26,16 @@ fn everything() -> impl Iterator<Item = (Whisker, Pole)> {
     [30.0, 20.0, 6.0, 1.5, 0.1, 0.0]
         .into_iter()
         .flat_map(|tip| [0.0, 0.02, 0.04, 0.07].map(|a| whisker(tip, a)))
-        .chain([0.1, 10.0].map(|ratio| Whisker {
-            modulus_tip_to_base: ratio,
-            ..whisker(1.5, 0.02)
-        }))
+        .chain(
+            [0.1, 10.0].map(|ratio| Whisker { modulus_tip_to_base: ratio, ..whisker(1.5, 0.02) }),
+        )
         .flat_map(|whisker| POLES.map(|pole| (whisker.clone(), pole)))
 }
 
 const POLES: [Pole; 4] = [POINT, POLE, Pole::smooth(1.0), ROUGH];
 
 /// Pole with friction.
-const ROUGH: Pole = Pole {
-    radius_mm: 0.25,
-    friction: 0.4,
-};
+const ROUGH: Pole = Pole { radius_mm: 0.25, friction: 0.4 };
 
 /// Pole of the paper, and a point contact.
 const POLE: Pole = Pole::smooth(0.25);
@@ -63,13 +57,7 @@ struct TestBranch {
 impl TestBranch {
     /// Returns a description of the whisker and the pole.
     fn case(&self) -> String {
-        let Self {
-            whisker,
-            pole,
-            side,
-            distance_mm,
-            ..
-        } = self;
+        let Self { whisker, pole, side, distance_mm, .. } = self;
         format!("{whisker:?} {pole:?} {side:?} at {distance_mm}")
     }
 }
@@ -96,8 +84,6 @@ static EVERY_BRANCH: LazyLock<Vec<TestBranch>> = LazyLock::new(|| {
 
 /// Returns the branches of [`EVERY_BRANCH`] at 9 mm, which every whisker reaches.
 fn branches_at_9_mm() -> impl Iterator<Item = (&'static TestBranch, &'static Branch)> {
-    let near = EVERY_BRANCH
-        .iter()
-        .filter(|traced| traced.distance_mm == 9.0);
+    let near = EVERY_BRANCH.iter().filter(|traced| traced.distance_mm == 9.0);
     near.map(|traced| (traced, traced.branch.as_ref().unwrap()))
 }

@@ -25,47 +25,24 @@ fn a_shape_fits_its_state() {
             let miss = (base.moment_nnm / reading.base_moment_nnm - 1.0).abs();
             assert!(miss < 1e-9, "{case}: {base:?}");
             // The curvature of the base changes by the strain over the radius, 30 um.
-            let at_rest = 2.0
-                * traced
-                    .whisker
-                    .curvature
-                    .map_or(0.0, |bend| bend.parabola_per_mm);
+            let at_rest = 2.0 * traced.whisker.curvature.map_or(0.0, |bend| bend.parabola_per_mm);
             let strain = 0.03 * (base.curvature_per_mm - at_rest).abs();
             assert!((strain - base.strain).abs() < 1e-12, "{case}: {base:?}");
             let strains = shape.points.iter().map(|point| point.strain);
             let most = strains.fold(0.0, f64::max);
             let peak = shape.state.peak_strain;
-            assert!(
-                (0.99..1.0 + 1e-9).contains(&(most / peak)),
-                "{case}: {most} {peak}"
-            );
+            assert!((0.99..1.0 + 1e-9).contains(&(most / peak)), "{case}: {most} {peak}");
             assert!(shape.residual < 1e-12, "{case}");
 
-            let contact = shape
-                .points
-                .iter()
-                .find(|p| p.part == WhiskerPart::Contact)
-                .unwrap();
+            let contact = shape.points.iter().find(|p| p.part == WhiskerPart::Contact).unwrap();
             let [x, y] = shape.pole_mm;
             let (dx, dy) = (x - contact.x_mm, y - contact.y_mm);
-            assert!(
-                (dx.hypot(dy) - traced.pole.radius_mm).abs() < 1e-11,
-                "{case}"
-            );
+            assert!((dx.hypot(dy) - traced.pole.radius_mm).abs() < 1e-11, "{case}");
             let (sin, cos) = contact.angle_deg.to_radians().sin_cos();
-            assert!(
-                (dx * cos + dy * sin).abs() < 1e-10,
-                "{case}: not tangential"
-            );
-            assert!(
-                (contact.arc_length_mm - reading.arc_length_mm).abs() < 1e-12,
-                "{case}"
-            );
+            assert!((dx * cos + dy * sin).abs() < 1e-10, "{case}: not tangential");
+            assert!((contact.arc_length_mm - reading.arc_length_mm).abs() < 1e-12, "{case}");
             assert_eq!(
-                (
-                    contact.moment_nnm,
-                    shape.points.last().unwrap().arc_length_mm
-                ),
+                (contact.moment_nnm, shape.points.last().unwrap().arc_length_mm),
                 (0.0, 20.0)
             );
         }
@@ -96,10 +73,7 @@ fn a_shape_is_a_curve() {
     };
     let (coarse, fine) = (error(400), error(800));
     for (coarse, fine) in coarse.into_iter().zip(fine) {
-        assert!(
-            coarse < 1e-3 && (3.0..5.0).contains(&(coarse / fine)),
-            "{coarse:e} {fine:e}"
-        );
+        assert!(coarse < 1e-3 && (3.0..5.0).contains(&(coarse / fine)), "{coarse:e} {fine:e}");
     }
 }
 
@@ -109,10 +83,7 @@ fn without_a_push_the_whisker_is_at_rest() {
         let state = branch.state(0.0, true).unwrap();
         // The contact is an additional point.
         let shape = branch.shape(&state, 50);
-        let places = shape
-            .points
-            .iter()
-            .filter(|point| point.part != WhiskerPart::Contact);
+        let places = shape.points.iter().filter(|point| point.part != WhiskerPart::Contact);
         for (point, [x, y]) in places.zip(branch.at_rest(50)) {
             let miss = (point.x_mm - x).hypot(point.y_mm - y);
             assert!(miss < 1e-10, "{}: {point:?} {x} {y}", traced.case());
@@ -131,10 +102,7 @@ fn a_shape_is_exact_at_every_count() {
             for count in [2, 5, 20, 333] {
                 let base = branch.shape(&state, count).points[0];
                 let miss = base.x_mm.hypot(base.y_mm);
-                assert!(
-                    miss < 1e-10,
-                    "{whisker:?} {pole:?} {side:?} {count}: {base:?}"
-                );
+                assert!(miss < 1e-10, "{whisker:?} {pole:?} {side:?} {count}: {base:?}");
             }
         }
     }

@@ -22,31 +22,16 @@ fn a_push_until_slip_off_comes_back() {
     // The image is turned by 20 degrees.
     let pixel = |[x, y]: [f64; 2], turn_deg: f64| {
         let (sin, cos) = (20.0 + turn_deg).to_radians().sin_cos();
-        [
-            60.0 + (cos * x - sin * y) / SCALE,
-            300.0 - (sin * x + cos * y) / SCALE,
-        ]
+        [60.0 + (cos * x - sin * y) / SCALE, 300.0 - (sin * x + cos * y) / SCALE]
     };
     let pushes: Vec<f64> = (0..24).map(f64::from).map(|k| -3.5 + k).collect();
     let mut text = String::new();
     for (frame, &push) in pushes.iter().enumerate() {
-        let free = || {
-            rest.iter()
-                .map(|point| pixel(*point, -push))
-                .collect::<Vec<_>>()
-        };
+        let free = || rest.iter().map(|point| pixel(*point, -push)).collect::<Vec<_>>();
         let held = || {
-            shape(push)
-                .points
-                .iter()
-                .map(|point| pixel([point.x_mm, point.y_mm], 0.0))
-                .collect()
+            shape(push).points.iter().map(|point| pixel([point.x_mm, point.y_mm], 0.0)).collect()
         };
-        for [x, y] in if (0.0..15.6).contains(&push) {
-            held()
-        } else {
-            free()
-        } {
+        for [x, y] in if (0.0..15.6).contains(&push) { held() } else { free() } {
             text += &format!("{frame},{x:?},{y:?}\n");
         }
     }
@@ -56,9 +41,7 @@ fn a_push_until_slip_off_comes_back() {
         options.curvature_at_mm = Some(2.0);
     });
     let found = parse(&text, &found).unwrap();
-    let [end] = found.detachments[..] else {
-        panic!("{:?}", found.detachments)
-    };
+    let [end] = found.detachments[..] else { panic!("{:?}", found.detachments) };
     assert_eq!(end.side, Side::Cb);
     // The whisker slips off at 15.608 degrees, between 15.5 and 16.5; it touches at 0, between -0.5 and 0.5.
     assert_near(Some(end.push_angle_deg), 16.0, 0.1);
@@ -112,10 +95,7 @@ fn a_push_until_slip_off_comes_back() {
             let wanted = shape(push).state.force_un;
             let force_un = force.force_un.unwrap();
             // Measured at 12.5 degrees: 0.26 %.
-            assert!(
-                (force_un / wanted - 1.0).abs() < 5e-3,
-                "{push} {force_un} {wanted}"
-            );
+            assert!((force_un / wanted - 1.0).abs() < 5e-3, "{push} {force_un} {wanted}");
             compared += 1;
         }
     }
@@ -131,9 +111,7 @@ fn the_shipped_film_has_a_slip_off() {
         options.contact_within_mm = Some(0.35);
     });
     let found = parse(text, &held).unwrap();
-    let [end] = found.detachments[..] else {
-        panic!("{:?}", found.detachments)
-    };
+    let [end] = found.detachments[..] else { panic!("{:?}", found.detachments) };
     assert_eq!(end.side, Side::Cb);
     // Measured: 16.01 degrees.
     assert_near(Some(end.push_angle_deg), 15.61, 0.6);
@@ -141,11 +119,7 @@ fn the_shipped_film_has_a_slip_off() {
     let gaps = found.frames.iter().filter(|row| row.reason.is_some());
     assert_eq!(gaps.map(|row| row.frame).collect::<Vec<_>>(), [4, 30, 31]);
     let is_beside = |note: &String| note.contains("beside the whisker");
-    assert!(
-        !found.warnings.iter().any(is_beside),
-        "{:?}",
-        found.warnings
-    );
+    assert!(!found.warnings.iter().any(is_beside), "{:?}", found.warnings);
 
     let without_pole = parse(text, &with(&|_| ())).unwrap();
     let notes = without_pole.warnings.iter().filter(|note| is_beside(note));
@@ -154,23 +128,15 @@ fn the_shipped_film_has_a_slip_off() {
     let are_few = |note: &String| note.contains("points along the whisker are few");
     assert!(!found.warnings.iter().any(are_few), "{:?}", found.warnings);
     let mut some = with(&|options| {
-        options.points = ["base", "w3", "w6", "w9", "w12", "tip"]
-            .map(str::to_owned)
-            .to_vec()
+        options.points = ["base", "w3", "w6", "w9", "w12", "tip"].map(str::to_owned).to_vec()
     });
     let few = parse(text, &some).unwrap();
     assert!(few.warnings.iter().any(are_few), "{:?}", few.warnings);
     // With a pole, six points are enough.
     (some.pole, some.contact_within_mm) = (held.pole, held.contact_within_mm);
     let enough = parse(text, &some).unwrap();
-    assert!(
-        !enough.warnings.iter().any(are_few),
-        "{:?}",
-        enough.warnings
-    );
-    let [end] = enough.detachments[..] else {
-        panic!("{:?}", enough.detachments)
-    };
+    assert!(!enough.warnings.iter().any(are_few), "{:?}", enough.warnings);
+    let [end] = enough.detachments[..] else { panic!("{:?}", enough.detachments) };
     assert_near(Some(end.push_angle_deg), 15.61, 1.2);
 }
 
@@ -182,9 +148,7 @@ fn frames_have_numbers_or_names_of_images() {
     let film: String = lines.map(|line| format!("{line}\n")).collect();
     let found = |text: &str| {
         let frames = parse(text, &options()).unwrap().frames.into_iter();
-        frames
-            .map(|frame| (frame.frame, frame.reason))
-            .collect::<Vec<_>>()
+        frames.map(|frame| (frame.frame, frame.reason)).collect::<Vec<_>>()
     };
     let whole = found(&film);
     assert_eq!(whole.len(), ANGLES.len());

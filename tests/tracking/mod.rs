@@ -32,11 +32,7 @@ fn with(change: &dyn Fn(&mut TrackingOptions)) -> TrackingOptions {
 }
 
 fn parse(text: &str, options: &TrackingOptions) -> Result<Tracking, TrackingError> {
-    Tracking::parse(
-        &[(text.to_owned(), "film.csv".to_owned())],
-        options,
-        &AtomicBool::new(false),
-    )
+    Tracking::parse(&[(text.to_owned(), "film.csv".to_owned())], options, &AtomicBool::new(false))
 }
 
 fn refusal(text: &str, options: &TrackingOptions) -> String {
@@ -67,10 +63,7 @@ const PARTS: [(&str, f64); 9] = [
 
 /// CSV file of DeepLabCut of the arc; `change` may change position and likelihood of a point: `(frame, name, position)`.
 fn deeplabcut(change: impl Fn(usize, &str, [f64; 2]) -> (String, f64)) -> String {
-    let names: String = PARTS
-        .iter()
-        .map(|(name, _)| format!(",{name},{name},{name}"))
-        .collect();
+    let names: String = PARTS.iter().map(|(name, _)| format!(",{name},{name},{name}")).collect();
     let scorers = ",net".repeat(3 * PARTS.len());
     let coords = ",x,y,likelihood".repeat(PARTS.len());
     let mut text = format!("scorer{scorers}\nbodyparts{names}\ncoords{coords}\n");
@@ -110,17 +103,11 @@ fn an_arc_of_deeplabcut_comes_back() {
         assert_near(row.at_y_mm, 25.0 * (1.0 - 0.2_f64.cos()), 1e-7);
         assert_near(row.length_mm, 20.0, 1e-7);
         assert_near(row.rms_mm, 0.0, 1e-9);
-        assert_eq!(
-            (row.contact, row.contact_x_mm, row.reason),
-            (None, None, None)
-        );
+        assert_eq!((row.contact, row.contact_x_mm, row.reason), (None, None, None));
     }
     assert!((found.frames[5].time_s - 0.01).abs() < 1e-15);
     let notes = found.notes.join("\n");
-    assert!(
-        notes.contains("base at 40.0,300.0 px; it moves by 0.00 px"),
-        "{notes}"
-    );
+    assert!(notes.contains("base at 40.0,300.0 px; it moves by 0.00 px"), "{notes}");
     assert!(
         notes.contains(
             "of whole whiskers have a curvature of degree 0, chosen by cross-validation in 6 frames"
@@ -151,10 +138,7 @@ fn lost_points_are_left_out_and_a_lost_base_is_a_gap() {
         (1, "base") => (format!("{x},{y}"), 0.89),
         (2, "d") => (format!("{},{y}", x + 100.0), 0.1),
         (3, "base" | "tip" | "a") => (",".to_owned(), 1.0),
-        (4, _) => (
-            format!("{},{y}", if name == "c" { x + 60.0 } else { x }),
-            1.0,
-        ),
+        (4, _) => (format!("{},{y}", if name == "c" { x + 60.0 } else { x }), 1.0),
         (5, "tip") => (format!("{x},{y}"), 0.5),
         _ => (format!("{x},{y}"), 1.0),
     });
@@ -165,25 +149,13 @@ fn lost_points_are_left_out_and_a_lost_base_is_a_gap() {
     assert_near(found.frames[2].curvature_per_mm, 0.04, 1e-7);
     assert_near(found.frames[5].length_mm, 17.5, 1e-7);
     let gap = found.frames[1];
-    assert_eq!(
-        (gap.angle_deg, gap.curvature_per_mm, gap.length_mm),
-        (None, None, None)
-    );
+    assert_eq!((gap.angle_deg, gap.curvature_per_mm, gap.length_mm), (None, None, None));
     assert_eq!(gap.time_s, 0.002);
     let notes = found.notes.join("\n");
     assert!(notes.contains("3 of 6 frames are gaps: 2 without base or enough points (missing), 1 along no smooth curve (no-curve)"), "{notes}");
     let why = found.shape(1).unwrap_err().to_string();
-    assert_eq!(
-        why,
-        "shape = 1: must be a frame with a whisker: this one is a gap"
-    );
-    assert!(
-        found
-            .shape(6)
-            .unwrap_err()
-            .to_string()
-            .contains("must be between 0 and 5")
-    );
+    assert_eq!(why, "shape = 1: must be a frame with a whisker: this one is a gap");
+    assert!(found.shape(6).unwrap_err().to_string().contains("must be between 0 and 5"));
     // A lower limit keeps the point.
     let low = with(&|options| options.likelihood = 0.85);
     assert_eq!(parse(&text, &low).unwrap().frames[1].reason, None);
@@ -207,10 +179,7 @@ fn an_image_is_mirrored_by_its_curvature_or_by_an_option() {
         assert_near(row.at_y_mm, other.at_y_mm.unwrap(), 1e-7);
     }
     assert!(
-        found
-            .notes
-            .join("\n")
-            .contains("the image is mirrored, so that the concave side is CF")
+        found.notes.join("\n").contains("the image is mirrored, so that the concave side is CF")
     );
     assert!(found.shape(0).unwrap()[8].y_mm > found.shape(0).unwrap()[0].y_mm);
     let not = with(&|options| options.mirror = Some(false));
@@ -224,16 +193,10 @@ fn the_base_is_named_found_or_near_the_follicle() {
     let names = ["tip", "g", "f", "e", "d", "c", "b", "a", "base"].map(str::to_owned);
     let reversed = with(&|options| options.points = names.to_vec());
     let found = parse(&deeplabcut(exact), &reversed).unwrap();
-    assert_eq!(
-        found.shape(0).unwrap()[0].x_mm,
-        SCALE * arc(20.0, ANGLES[0])[0]
-    );
+    assert_eq!(found.shape(0).unwrap()[0].x_mm, SCALE * arc(20.0, ANGLES[0])[0]);
     let follicle = with(&|options| options.follicle_px = Some([400.0, 200.0]));
     let found = parse(&deeplabcut(exact), &follicle).unwrap();
-    assert_eq!(
-        found.shape(0).unwrap()[0].x_mm,
-        SCALE * arc(20.0, ANGLES[0])[0]
-    );
+    assert_eq!(found.shape(0).unwrap()[0].x_mm, SCALE * arc(20.0, ANGLES[0])[0]);
     // The whisker that shifts as a whole shows no base.
     let shifted = deeplabcut(|frame, name, _| {
         let s = PARTS.iter().find(|(part, _)| *part == name).unwrap().1;
@@ -289,10 +252,7 @@ fn measurements_of_whisk_come_back() {
         );
         assert!(found.notes.contains(&note), "{:?}", found.notes);
         let why = found.shape(0).unwrap_err().to_string();
-        assert!(
-            why.contains("measurements of whisk have no points along the whisker"),
-            "{why}"
-        );
+        assert!(why.contains("measurements of whisk have no points along the whisker"), "{why}");
     }
     // The axis may be given, and the table may have the names of ndx-whisk and no labels.
     let named =
@@ -326,33 +286,17 @@ fn points(frame: usize) -> String {
 fn points_without_a_header_come_back() {
     let files: Vec<(String, String)> = (0..ANGLES.len())
         .map(|frame| {
-            (
-                if frame == 3 {
-                    String::new()
-                } else {
-                    points(frame)
-                },
-                format!("{frame}.csv"),
-            )
+            (if frame == 3 { String::new() } else { points(frame) }, format!("{frame}.csv"))
         })
         .collect();
     let cancel = AtomicBool::new(false);
     let several = Tracking::parse(&files, &options(), &cancel).unwrap();
     let rows = |frame: usize| -> String {
-        points(frame)
-            .lines()
-            .map(|line| format!("{frame},{line}\n"))
-            .collect()
+        points(frame).lines().map(|line| format!("{frame},{line}\n")).collect()
     };
-    let one: String = (0..ANGLES.len())
-        .filter(|frame| *frame != 3)
-        .map(rows)
-        .collect();
+    let one: String = (0..ANGLES.len()).filter(|frame| *frame != 3).map(rows).collect();
     let one = parse(&one, &options()).unwrap();
-    assert_eq!(
-        (several.format, &several.frames),
-        (TrackingFormat::Xy, &one.frames)
-    );
+    assert_eq!((several.format, &several.frames), (TrackingFormat::Xy, &one.frames));
     for (row, angle) in one.frames.iter().zip(ANGLES) {
         if row.frame == 3 {
             assert_eq!(row.reason, Some(NoFrame::Missing));
@@ -366,10 +310,7 @@ fn points_without_a_header_come_back() {
     assert!(single.notes[0].contains("points are taken from base to tip as they are given"));
     assert_near(single.frames[0].curvature_per_mm, 0.04, 1e-9);
     let semicolons = points(0).replace(',', ";").replace('.', ",");
-    assert_eq!(
-        parse(&semicolons, &options()).unwrap().frames,
-        single.frames
-    );
+    assert_eq!(parse(&semicolons, &options()).unwrap().frames, single.frames);
 }
 
 /// A lost end does not turn the points of its frame around, and a frame without its base is a gap.
@@ -379,20 +320,15 @@ fn points_without_numbers_are_lost() {
     let lost = |frame: usize, which: usize, marker: &str| -> String {
         let text = points(frame);
         let lines = text.lines().enumerate();
-        lines
-            .map(|(i, line)| format!("{}\n", if i == which { marker } else { line }))
-            .collect()
+        lines.map(|(i, line)| format!("{}\n", if i == which { marker } else { line })).collect()
     };
     let mut files: Vec<(String, String)> = known.collect();
     let cancel = AtomicBool::new(false);
     let all = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
     // Odd frames are given from tip to base. Frame 1 loses its tip, 2 its base, 3 its base, and 4 a point between.
-    for (frame, which, marker) in [
-        (1, 0, "NA,NA"),
-        (2, 0, "nan,3"),
-        (3, 20, ",4"),
-        (4, 7, "none,N/A"),
-    ] {
+    for (frame, which, marker) in
+        [(1, 0, "NA,NA"), (2, 0, "nan,3"), (3, 20, ",4"), (4, 7, "none,N/A")]
+    {
         files[frame].0 = lost(frame, which, marker);
     }
     let some = Tracking::parse(&files, &options(), &cancel).unwrap().frames;

@@ -21,10 +21,7 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
             "film.csv:3: begins with axes: must begin with coords",
         ),
         (
-            good.lines()
-                .take(3)
-                .map(|line| format!("{line}\n"))
-                .collect(),
+            good.lines().take(3).map(|line| format!("{line}\n")).collect(),
             "has no frames: must have at least one row below scorer, bodyparts and coords",
         ),
         (
@@ -56,30 +53,18 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
             measurements(FaceAxis::X).replace("\n1,3", "\n-1,3"),
             "film.csv:4: fid = -1: must be a whole number of at least 0",
         ),
-        (
-            measurements(FaceAxis::X).replace(",1500,", ",1500,up"),
-            "angle = up",
-        ),
-        (
-            "0,1\n0,far\n".to_owned(),
-            "film.csv:2: y = far: must be a number between -1e6 and 1e6",
-        ),
+        (measurements(FaceAxis::X).replace(",1500,", ",1500,up"), "angle = up"),
+        ("0,1\n0,far\n".to_owned(), "film.csv:2: y = far: must be a number between -1e6 and 1e6"),
         (
             "0,1\n0,2e6\n".to_owned(),
             "film.csv:2: y = 2e6: must be a number between -1e6 and 1e6, or empty where it is missing",
         ),
-        (
-            "0,1,2,3\n".to_owned(),
-            "film.csv:1: has 4 cells: must have x,y or frame,x,y",
-        ),
+        ("0,1,2,3\n".to_owned(), "film.csv:1: has 4 cells: must have x,y or frame,x,y"),
         (
             "1,0,1\n0,0,1\n".to_owned(),
             "film.csv:2: frame = 0: must be at least 1 of the line before",
         ),
-        (
-            "\n".to_owned(),
-            "film.csv: has no points: must have x,y or frame,x,y",
-        ),
+        ("\n".to_owned(), "film.csv: has no points: must have x,y or frame,x,y"),
         (
             "0,1,1\n9000000,1,1\n".to_owned(),
             "must have frames whose numbers differ by less than 1000000",
@@ -88,10 +73,7 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
         let message = refusal(&text, &options());
         assert!(message.contains(why), "{message}\n{why}");
     }
-    let two = [
-        (good.clone(), "a.csv".to_owned()),
-        (good, "b.csv".to_owned()),
-    ];
+    let two = [(good.clone(), "a.csv".to_owned()), (good, "b.csv".to_owned())];
     let why = Tracking::parse(&two, &options(), &AtomicBool::new(false)).unwrap_err();
     assert_eq!(
         why.to_string(),
@@ -104,11 +86,7 @@ fn bad_files_are_named_with_line_value_and_what_is_allowed() {
 fn a_degree_that_needs_more_points_is_named() {
     let film = deeplabcut(exact);
     for (degree, fit_to_mm, why) in [
-        (
-            6,
-            None,
-            "with 10 points along a smooth curve, the base among them and all within 17.",
-        ),
+        (6, None, "with 10 points along a smooth curve, the base among them and all within 17."),
         (
             2,
             Some(10.0),
@@ -133,21 +111,13 @@ fn options_that_do_not_fit_are_refused() {
             with(&|options| options.mm_per_pixel = 0.0),
             "mm_per_pixel = 0: must be a number between 1e-9 and 1e9",
         ),
-        (
-            &film,
-            with(&|options| options.fps = f64::NAN),
-            "fps = NaN: must be a number between",
-        ),
+        (&film, with(&|options| options.fps = f64::NAN), "fps = NaN: must be a number between"),
         (
             &film,
             with(&|options| options.likelihood = 1.5),
             "likelihood = 1.5: must be a number between 0 and 1",
         ),
-        (
-            &film,
-            with(&|options| options.degree = Some(7)),
-            "degree = 7: must be between 0 and 6",
-        ),
+        (&film, with(&|options| options.degree = Some(7)), "degree = 7: must be between 0 and 6"),
         (
             &film,
             with(&|options| options.pole = Some(at.clone())),
@@ -188,11 +158,7 @@ fn options_that_do_not_fit_are_refused() {
             with(&|options| options.points = vec!["bse".to_owned()]),
             "points = bse: must be one of c, base, tip, a, f, b, g, d, e; did you mean `base`?",
         ),
-        (
-            &film,
-            with(&|options| options.whisker = Some(1)),
-            "whisker = 1: must be left out",
-        ),
+        (&film, with(&|options| options.whisker = Some(1)), "whisker = 1: must be left out"),
         (
             &film,
             with(&|options| options.face_axis = Some(FaceAxis::Y)),

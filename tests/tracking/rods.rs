@@ -163,9 +163,7 @@ fn film_of(
             Some(shape) => {
                 let points = shape.points.iter();
                 let traced = points.filter(|point| point.part != WhiskerPart::Contact);
-                traced
-                    .map(|point| pixel([point.x_mm, point.y_mm], 0.0))
-                    .collect()
+                traced.map(|point| pixel([point.x_mm, point.y_mm], 0.0)).collect()
             }
             None => rest.iter().map(|point| pixel(*point, -push)).collect(),
         };
@@ -211,16 +209,10 @@ fn few_points_with_errors_show_angles_forces_and_taper() {
                 // First touch and detachment are in the middle between frames.
                 let wanted = side.sign() * 0.5 * held as f64;
                 assert_near(Some(end.push_angle_deg), wanted, 0.9);
-                let note = found
-                    .notes
-                    .iter()
-                    .find(|note| note.contains("the taper is "));
+                let note = found.notes.iter().find(|note| note.contains("the taper is "));
                 let note = note.unwrap().split(['s', ',', ' ']);
                 let numbers: Vec<f64> = note.filter_map(|word| word.parse().ok()).collect();
-                assert!(
-                    (numbers[0] - taper).abs() < 0.01,
-                    "{side:?} {count} {numbers:?}"
-                );
+                assert!((numbers[0] - taper).abs() < 0.01, "{side:?} {count} {numbers:?}");
                 if scene == CONE {
                     let parts = forces_un(&found.frames).into_iter().zip(&truth);
                     let parts = parts.filter(|(_, exact)| (2.0..15.0).contains(&exact.push.abs()));
@@ -253,10 +245,7 @@ fn tapers_scatter_by_their_standard_deviations() {
     let off: Vec<f64> = off.collect();
     let within = off.iter().filter(|off| off.abs() < 1.0).count();
     let rms = rms(&off);
-    assert!(
-        (27..=41).contains(&within) && (0.75..1.3).contains(&rms),
-        "{within} {rms}"
-    );
+    assert!((27..=41).contains(&within) && (0.75..1.3).contains(&rms), "{within} {rms}");
 }
 
 /// The scatter of the curvature without contact is that of its errors in contact, so that `force` has honest standard deviations.
@@ -271,9 +260,7 @@ fn the_curvature_scatters_alike_with_and_without_contact() {
     };
     let pairs = curvatures(&text).zip(curvatures(&exact));
     let scatter = |is_held: bool| {
-        let compared = pairs
-            .clone()
-            .filter(|(row, exact)| row.0 == is_held && exact.0 == is_held);
+        let compared = pairs.clone().filter(|(row, exact)| row.0 == is_held && exact.0 == is_held);
         let errors: Vec<f64> = compared.map(|(row, exact)| row.1 - exact.1).collect();
         let mean = errors.iter().sum::<f64>() / errors.len() as f64;
         rms(&errors.iter().map(|error| error - mean).collect::<Vec<_>>())
@@ -293,10 +280,7 @@ fn points_off_the_rod_are_named() {
             warning.contains("the whisker near the pole is off the rod: check --contact-within")
         })
     };
-    assert_eq!(
-        [None, Some(0.95), Some(0.65)].map(is_off),
-        [false, false, true]
-    );
+    assert_eq!([None, Some(0.95), Some(0.65)].map(is_off), [false, false, true]);
 }
 
 #[test]
@@ -304,10 +288,7 @@ fn polynomials_remain_where_they_are_selected_or_no_frame_is_free() {
     let (text, pole, truth) = film(CONE, Side::Cb, 20, 0.0);
     let polynomials = at_pole(pole, &|options| options.fit_to_mm = Some(12.0));
     let notes = parse(&text, &polynomials).unwrap().notes.join("\n");
-    assert!(
-        notes.contains("curves near the base, up to 12 mm from it"),
-        "{notes}"
-    );
+    assert!(notes.contains("curves near the base, up to 12 mm from it"), "{notes}");
     assert!(!notes.contains("rod"), "{notes}");
     // Only frames in contact.
     let is_held = |line: &&str| {
@@ -319,10 +300,7 @@ fn polynomials_remain_where_they_are_selected_or_no_frame_is_free() {
     assert!(!found.notes.join("\n").contains("rod"), "{:?}", found.notes);
     // Without contact, no frame shows the taper.
     let free: Vec<&str> = text.lines().filter(|line| !is_held(line)).collect();
-    let notes = parse(&free.join("\n"), &at_pole(pole, &|_| ()))
-        .unwrap()
-        .notes
-        .join("\n");
+    let notes = parse(&free.join("\n"), &at_pole(pole, &|_| ())).unwrap().notes.join("\n");
     let why = "frames near the pole do not show the taper: 0.95 is taken; give it by --taper";
     assert!(notes.contains(why), "{notes}");
 }
@@ -335,11 +313,7 @@ fn a_pole_ahead_of_the_trace_leaves_the_contact_unknown() {
         let angle = (2.0 * f64::from(frame) - 10.0_f64).to_radians();
         for point in 0..if frame == 3 { 4 } else { 8 } {
             let s = 400.0 * f64::from(point) / 7.0;
-            text += &format!(
-                "{frame},{:?},{:?}\n",
-                s * angle.cos(),
-                300.0 - s * angle.sin()
-            );
+            text += &format!("{frame},{:?},{:?}\n", s * angle.cos(), 300.0 - s * angle.sin());
         }
     }
     // 0.5 mm beyond the tip at the angle 0 of frame 5.

@@ -80,9 +80,7 @@ fn a_distance_in_contact_below_the_radius_of_the_pole_is_named() {
 fn few_points_without_a_shape_at_rest_leave_contacts_unknown() {
     for (count, is_known) in [(5, false), (20, true)] {
         let (text, pole, truth) = film(CONE, Side::Cb, count, 0.0);
-        let held = changed(&text, count, |frame, _, at| {
-            truth[frame].shape.is_some().then_some(at)
-        });
+        let held = changed(&text, count, |frame, _, at| truth[frame].shape.is_some().then_some(at));
         let found = parse(&held, &at_pole(pole, &|_| ())).unwrap();
         let why = "fewer than 3 frames are more than ";
         assert!(warns(&found, why), "{:?}", found.warnings);
@@ -109,36 +107,19 @@ fn body_parts_that_are_lost_in_all_frames_are_named() {
         options.contact_within_mm = Some(0.3);
     });
     let found = parse(&lost("g"), &pole).unwrap();
-    assert!(
-        warns(&found, "body part g: lost in all frames"),
-        "{:?}",
-        found.warnings
-    );
-    assert!(
-        warns(&found, "contacts are not known"),
-        "{:?}",
-        found.warnings
-    );
+    assert!(warns(&found, "body part g: lost in all frames"), "{:?}", found.warnings);
+    assert!(warns(&found, "contacts are not known"), "{:?}", found.warnings);
     assert!(!warns(&found, "5 with --pole"), "{:?}", found.warnings);
-    assert_eq!(
-        parse(&lost("none"), &options()).unwrap().warnings.len(),
-        1,
-        "few points"
-    );
+    assert_eq!(parse(&lost("none"), &options()).unwrap().warnings.len(), 1, "few points");
 }
 
 /// A frame in contact is displaced by 30 pixels.
 #[test]
 fn a_displaced_frame_has_no_curve() {
     let (text, pole, truth) = film(CONE, Side::Cb, 8, 0.05);
-    let held = truth
-        .iter()
-        .position(|exact| exact.shape.is_some())
-        .unwrap()
-        + 8;
-    let text = changed(&text, 8, |frame, _, [x, y]| {
-        Some([if frame == held { x + 30.0 } else { x }, y])
-    });
+    let held = truth.iter().position(|exact| exact.shape.is_some()).unwrap() + 8;
+    let text =
+        changed(&text, 8, |frame, _, [x, y]| Some([if frame == held { x + 30.0 } else { x }, y]));
     let found = parse(&text, &at_pole(pole, &|_| ())).unwrap();
     for row in &found.frames {
         let reason = (row.frame == held as u64).then_some(NoFrame::NoCurve);
@@ -169,14 +150,7 @@ fn a_whisker_of_an_unlikely_length_is_named() {
     let film = deeplabcut(exact);
     let inverse = with(&|options| options.mm_per_pixel = 1.0 / SCALE);
     let warnings = parse(&film, &inverse).unwrap().warnings;
-    assert_eq!(
-        warnings.iter().filter(|warning| is_long(warning)).count(),
-        1,
-        "{warnings:?}"
-    );
+    assert_eq!(warnings.iter().filter(|warning| is_long(warning)).count(), 1, "{warnings:?}");
     let warnings = parse(&film, &options()).unwrap().warnings;
-    assert!(
-        !warnings.iter().any(|warning| warning.contains("mm long")),
-        "{warnings:?}"
-    );
+    assert!(!warnings.iter().any(|warning| warning.contains("mm long")), "{warnings:?}");
 }

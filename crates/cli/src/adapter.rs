@@ -14,9 +14,7 @@ pub fn is_named(wanted: Option<&str>) -> bool {
 
 /// Returns the value of the environment variable; `None` if it is not set, or empty.
 fn variable() -> Option<String> {
-    env::var(ADAPTER_VARIABLE)
-        .ok()
-        .filter(|name| !name.is_empty())
+    env::var(ADAPTER_VARIABLE).ok().filter(|name| !name.is_empty())
 }
 
 /// Returns the index of the `wanted` adapter, else of the one named by `WGPU_ADAPTER_NAME`, else of the preferred one; `None`
@@ -37,10 +35,9 @@ pub fn chosen(
             };
             (format!("--adapter {wanted}"), found)
         }
-        (None, Some(name)) => (
-            format!("{ADAPTER_VARIABLE}={name}"),
-            named(reports, &name, precision),
-        ),
+        (None, Some(name)) => {
+            (format!("{ADAPTER_VARIABLE}={name}"), named(reports, &name, precision))
+        }
         (None, None) => {
             let preferred = |precision| preferred(reports, precision);
             return Ok(preferred(precision).or_else(|| preferred(Precision::F32)));

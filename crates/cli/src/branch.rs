@@ -94,10 +94,7 @@ enum BranchColumn {
 impl BranchColumn {
     /// Returns true for a load, which grows far beyond the stable states.
     const fn is_load(self) -> bool {
-        matches!(
-            self,
-            Self::ForceUn | Self::ContactForceUn | Self::BaseMomentNnm
-        )
+        matches!(self, Self::ForceUn | Self::ContactForceUn | Self::BaseMomentNnm)
     }
 
     fn axis(self) -> BranchAxis {
@@ -119,10 +116,7 @@ impl BranchColumn {
     }
 }
 
-const PUSH: BranchAxis = BranchAxis {
-    label: PUSH_ANGLE,
-    value: |point| point.push_angle_deg,
-};
+const PUSH: BranchAxis = BranchAxis { label: PUSH_ANGLE, value: |point| point.push_angle_deg };
 
 pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
     let distances = &each_once(&args.poles.distance);
@@ -133,9 +127,7 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
         SideChoice::Cf => &[Side::Cf],
         SideChoice::Both => &Side::BOTH,
     };
-    let variables = args
-        .derivatives
-        .variables(&scene, &[Variable::PushAngleDeg])?;
+    let variables = args.derivatives.variables(&scene, &[Variable::PushAngleDeg])?;
     let mut states = Vec::new();
     for &distance in distances {
         for side in sides {
@@ -146,15 +138,8 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
     }
     let points: Vec<BranchPoint> = states.iter().map(|state| state.point).collect();
     outputs.rows(states.into_iter().map(|state| {
-        let columns = DerivativeColumns {
-            variables: &variables,
-            by: state.by,
-            first: 1,
-        };
-        Marked(
-            (state.point, columns),
-            YieldMark::new(&whisker, state.point.peak_strain),
-        )
+        let columns = DerivativeColumns { variables: &variables, by: state.by, first: 1 };
+        Marked((state.point, columns), YieldMark::new(&whisker, state.point.peak_strain))
     }))?;
     outputs.finish(title(&scene, distances), || plot(&scene, &points, args))
 }
@@ -162,24 +147,16 @@ pub fn run(args: &BranchArgs, files: &mut Files) -> Result<(), Failure> {
 /// Plots branches. Each of several poles has its own colour.
 fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
     let y = args.y.axis();
-    let at_poles: Vec<_> = points
-        .chunk_by(|a, b| a.distance_mm == b.distance_mm)
-        .collect();
+    let at_poles: Vec<_> = points.chunk_by(|a, b| a.distance_mm == b.distance_mm).collect();
     let named: Vec<_> = match &at_poles[..] {
         [only] => vec![(Ink::Black, "stable".to_owned(), *only)],
         poles => {
             let name = |points: &[BranchPoint]| format!("{} mm, stable", points[0].distance_mm);
             let poles = poles.iter().enumerate();
-            poles
-                .map(|(index, points)| (Ink::Series(index), name(points), *points))
-                .collect()
+            poles.map(|(index, points)| (Ink::Series(index), name(points), *points)).collect()
         }
     };
-    let drawn = named.iter().map(|(ink, name, points)| DrawnBranch {
-        points,
-        ink: *ink,
-        name,
-    });
+    let drawn = named.iter().map(|(ink, name, points)| DrawnBranch { points, ink: *ink, name });
     let stable = points.iter().filter(|point| point.stable).map(y.value);
     let ends = stable.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| {
         [value.min(low), value.max(high)]

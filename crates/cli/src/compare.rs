@@ -74,12 +74,7 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
 
 /// Opens both maps. For a scene, the channels that the other map has are computed.
 fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure> {
-    let CompareArgs {
-        first,
-        second,
-        solver,
-        ..
-    } = args;
+    let CompareArgs { first, second, solver, .. } = args;
     let of_scene = |scene: Scene, other: Option<&MapSource>| {
         let known = channel_names(&scene);
         let channels = other.map_or(Channels::STANDARD, |other| {
@@ -92,10 +87,7 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
     // Options of the solver are for the scene, if there is one.
     let unused = SolverArgs::default();
     Ok(match [first, second].map(|path| is_scene(path)) {
-        [false, false] => [
-            stored(files, first, solver)?,
-            stored(files, second, solver)?,
-        ],
+        [false, false] => [stored(files, first, solver)?, stored(files, second, solver)?],
         [false, true] => {
             let stored_map = stored(files, first, &unused)?;
             let scene_map = of_scene(files.scene(second)?, Some(&stored_map))?;
@@ -147,11 +139,7 @@ fn print(
     }
     writeln!(out, "{:>12}  cells", found.cells)?;
     for codes in &found.codes {
-        writeln!(
-            out,
-            "{:>12}  cells differ in {}",
-            codes.differing, codes.channel
-        )?;
+        writeln!(out, "{:>12}  cells differ in {}", codes.differing, codes.channel)?;
         for pair in &codes.pairs {
             let [first, second] = &pair.names;
             writeln!(out, "{:>12}  {first} / {second}", pair.cells)?;
@@ -202,11 +190,7 @@ fn table(out: &mut impl Write, quantities: &[QuantityComparison]) -> io::Result<
             true => format!("  {:>13.1e}", quantity.beyond_rounding),
             false => String::new(),
         };
-        let place = quantity
-            .place
-            .as_ref()
-            .map(ToString::to_string)
-            .unwrap_or_default();
+        let place = quantity.place.as_ref().map(ToString::to_string).unwrap_or_default();
         let line = format!(
             "{:19}  {:>10}  {:>10}  {:>8.1e}  {:>8.1e}  {:>8.1e}{rounding}  {place}",
             quantity.channel,

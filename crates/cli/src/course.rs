@@ -46,11 +46,7 @@ fn sine(text: &str) -> Result<Sine, String> {
         return Err("the amplitude must be between -360deg and 360deg, and not 0".to_owned());
     }
     let named = |name: &str, text| positive(text).map_err(|why| format!("{name} {text}: {why}"));
-    Ok([
-        amplitude,
-        named("frequency in Hz", frequency)?,
-        named("duration in s", seconds)?,
-    ])
+    Ok([amplitude, named("frequency in Hz", frequency)?, named("duration in s", seconds)?])
 }
 
 impl CourseArgs {

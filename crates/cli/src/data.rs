@@ -11,12 +11,7 @@ use whiskmap::scene::{digits, rounded};
 #[derive(Debug, Args)]
 pub struct ColumnArgs {
     /// Names of own columns in place of expected ones, separated by commas: push=angle takes the column `angle` for push_angle_deg
-    #[arg(
-        long,
-        value_name = "NAME=COLUMN",
-        value_delimiter = ',',
-        requires = "table"
-    )]
+    #[arg(long, value_name = "NAME=COLUMN", value_delimiter = ',', requires = "table")]
     columns: Vec<ColumnName>,
 }
 
@@ -54,11 +49,8 @@ pub fn summary(comparison: &Comparison) -> Vec<(&'static str, String)> {
         comparison.of_another_kind()
     );
     let degrees = |value: f64| format!("{} deg", digits(rounded(value, STATISTIC_DIGITS)));
-    let residuals = [
-        ("RMS", comparison.rms_deg()),
-        ("bias", comparison.bias_deg()),
-    ]
-    .map(|(name, value)| Some((name, degrees(value?))));
+    let residuals = [("RMS", comparison.rms_deg()), ("bias", comparison.bias_deg())]
+        .map(|(name, value)| Some((name, degrees(value?))));
     let count = Some(("points compared", count));
     [count].into_iter().chain(residuals).flatten().collect()
 }

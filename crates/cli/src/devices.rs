@@ -14,10 +14,7 @@ pub fn run() -> Result<(), Failure> {
     let cpu = format!("{} on {}", cpu.engine, cpu.adapter);
     if reports.is_empty() {
         let why = missing();
-        writeln!(
-            out,
-            "no GPU adapter found: {why}\n--engine auto selects {cpu}"
-        )?;
+        writeln!(out, "no GPU adapter found: {why}\n--engine auto selects {cpu}")?;
         return Ok(());
     }
     let selected = chosen(&reports, None, Precision::F32);

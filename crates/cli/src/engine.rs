@@ -82,28 +82,22 @@ impl EngineArgs {
             }
             EngineChoice::Spectral => (Some(Box::new(map.spectral())), selected()),
             EngineChoice::Cpu => (None, selected()),
-            EngineChoice::Gpu => (
-                None,
-                "in place of the GPU, which is not opened; the time is the CPU's".to_owned(),
-            ),
+            EngineChoice::Gpu => {
+                (None, "in place of the GPU, which is not opened; the time is the CPU's".to_owned())
+            }
         })
     }
 
     /// Returns the options of a task of `submit`: those given, with the CPU engine if none is named.
     pub fn of_task(&self) -> Self {
-        Self {
-            engine: self.engine.or(Some(EngineChoice::Cpu)),
-            ..self.clone()
-        }
+        Self { engine: self.engine.or(Some(EngineChoice::Cpu)), ..self.clone() }
     }
 
     /// Returns the name of the first option that is given; `None` without one.
     pub fn given(&self) -> Option<&'static str> {
         let engine = self.engine.map(|_| "--engine");
         let precision = self.precision.map(|_| "--precision");
-        engine
-            .or(precision)
-            .or(self.adapter.as_ref().map(|_| "--adapter"))
+        engine.or(precision).or(self.adapter.as_ref().map(|_| "--adapter"))
     }
 
     /// Returns true if the options name an engine.
@@ -182,9 +176,7 @@ impl EngineArgs {
         }
         let precision = self.precision();
         let bound_deg = map.excess_deg(precision.goal())?;
-        Some(format!(
-            "gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"
-        ))
+        Some(format!("gpu {precision} only bounds the push angle to {bound_deg:.1e} deg"))
     }
 
     fn precision(&self) -> Precision {

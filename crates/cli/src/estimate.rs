@@ -46,15 +46,9 @@ pub fn file_costs(
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let packed = formats.iter().map(|format| {
         let start = Instant::now();
-        let packed = groups
-            .iter()
-            .map(|panels| format.pack(&small, &small_plan, panels));
+        let packed = groups.iter().map(|panels| format.pack(&small, &small_plan, panels));
         let bytes = packed.sum::<u64>() as f64 * by_cells;
-        FileCost {
-            format: *format,
-            bytes,
-            seconds: start.elapsed().as_secs_f64() * by_cells,
-        }
+        FileCost { format: *format, bytes, seconds: start.elapsed().as_secs_f64() * by_cells }
     });
     Ok(packed.collect())
 }
@@ -170,11 +164,7 @@ impl MapSample {
         let summary = map::run_to_end(&scene, &plan, engine, |_| ());
         match summary.engine_failure {
             Some(failure) => Err(failure.into()),
-            None => Ok(Self {
-                scene,
-                plan,
-                summary,
-            }),
+            None => Ok(Self { scene, plan, summary }),
         }
     }
 

@@ -19,10 +19,7 @@ use whiskmap::trace::DetachmentKind;
 const PAGE: &str = include_str!("../explore.html");
 
 /// Element of the page that has the scene and the points, as JSON.
-const START: [&str; 2] = [
-    r#"<script type="application/json" id="start">"#,
-    "</script>",
-];
+const START: [&str; 2] = [r#"<script type="application/json" id="start">"#, "</script>"];
 
 #[derive(Debug, Args)]
 #[command(after_help = "\
@@ -97,11 +94,7 @@ fn csv(points: &MeasuredPoints) -> String {
     let head = format!(
         "side,distance_mm,{},kind{}\n",
         points.angle.column(),
-        if points.have_deviations {
-            ",sd_deg"
-        } else {
-            ""
-        }
+        if points.have_deviations { ",sd_deg" } else { "" }
     );
     let row = |point: &MeasuredPoint| {
         let side = if point.side == Side::Cb { "cb" } else { "cf" };
@@ -112,10 +105,7 @@ fn csv(points: &MeasuredPoints) -> String {
         };
         let sd = points.have_deviations.then(|| format!(",{}", point.sd_deg));
         let sd = sd.unwrap_or_default();
-        format!(
-            "{side},{},{},{kind}{sd}\n",
-            point.distance_mm, point.angle_deg
-        )
+        format!("{side},{},{},{kind}{sd}\n", point.distance_mm, point.angle_deg)
     };
     let rows = points.points.iter().map(row);
     std::iter::once(head).chain(rows).collect()

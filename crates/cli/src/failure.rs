@@ -67,22 +67,13 @@ pub enum Failure {
     Texture(TextureError),
     /// Every result of the command is unresolved.
     #[error("all {all} {what} are unresolved: see {see}")]
-    Unresolved {
-        all: u64,
-        what: &'static str,
-        see: &'static str,
-    },
+    Unresolved { all: u64, what: &'static str, see: &'static str },
     /// The command `design` found no value.
     #[error("{0}")]
     NoValue(String),
     /// A store has missing or damaged files.
     #[error("{} is incomplete: {}", store.display(), faults(*missing, *damaged, *metadata))]
-    Incomplete {
-        store: PathBuf,
-        missing: usize,
-        damaged: usize,
-        metadata: usize,
-    },
+    Incomplete { store: PathBuf, missing: usize, damaged: usize, metadata: usize },
     /// Checks of the command `verify` fail.
     #[error("{failed} of {all} checks fail")]
     Checks { failed: usize, all: usize },
@@ -143,11 +134,7 @@ fn faults(missing: usize, damaged: usize, metadata: usize) -> String {
     let kinds = [
         (missing, ["block is", "blocks are"], "missing"),
         (damaged, ["block is", "blocks are"], "damaged"),
-        (
-            metadata,
-            ["file of metadata is", "files of metadata are"],
-            "damaged",
-        ),
+        (metadata, ["file of metadata is", "files of metadata are"], "damaged"),
     ];
     let present = kinds.into_iter().filter(|(count, ..)| *count > 0);
     let faults: Vec<String> = present
@@ -185,9 +172,7 @@ pub fn notes(notes: impl IntoIterator<Item = impl Display>) {
 /// Prints an error of clap about `arguments`. clap quotes arguments as they are, so this function parses them again with control characters
 /// escaped.
 pub fn refuse(arguments: &[OsString], wrong: &clap::Error) {
-    let shown = arguments
-        .iter()
-        .map(|argument| escaped(&argument.to_string_lossy()));
+    let shown = arguments.iter().map(|argument| escaped(&argument.to_string_lossy()));
     match Arguments::try_parse_from(shown) {
         // A closed standard error hides the message, not the code.
         Err(wrong) => drop(wrong.print()),
@@ -211,9 +196,7 @@ pub fn check_resolved(
     if unresolved == all {
         return Err(Failure::Unresolved { all, what, see });
     }
-    message(&format!(
-        "warning: {unresolved} of {all} {what} are unresolved: see {see}"
-    ));
+    message(&format!("warning: {unresolved} of {all} {what} are unresolved: see {see}"));
     Ok(())
 }
 

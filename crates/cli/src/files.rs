@@ -27,12 +27,7 @@ pub struct Files {
 impl Files {
     /// Creates an empty list of inputs and outputs; `temporary` has the files of outputs until they are finished.
     pub const fn new(temporary: TemporaryFiles) -> Self {
-        Self {
-            temporary,
-            reads_stdin: false,
-            inputs: Vec::new(),
-            outputs: Vec::new(),
-        }
+        Self { temporary, reads_stdin: false, inputs: Vec::new(), outputs: Vec::new() }
     }
 
     /// Returns the temporary files of the outputs.
@@ -80,8 +75,7 @@ impl Files {
             let why = format!("standard output: is the input {input}; name another file");
             return Err(Failure::Input(why));
         }
-        self.inputs
-            .extend(input.map(|input| (path.to_owned(), input)));
+        self.inputs.extend(input.map(|input| (path.to_owned(), input)));
         Ok(())
     }
 
@@ -126,11 +120,7 @@ impl Files {
     /// Creates a temporary folder for the new store of `option`.
     pub fn new_store(&self, option: &str, path: &Path) -> Result<TemporaryFolder, Failure> {
         let made = TemporaryFolder::create(path, &self.temporary);
-        made.map_err(impossible(
-            option,
-            path,
-            "give a name in a folder that can be written",
-        ))
+        made.map_err(impossible(option, path, "give a name in a folder that can be written"))
     }
 
     /// Creates the folder of `option`, and checks that files can be created in it.
@@ -237,9 +227,7 @@ fn is_of_path(error: &io::Error) -> bool {
     const CODES: &[i32] = &[libc::ELOOP];
     #[cfg(not(unix))]
     const CODES: &[i32] = &[1921, 32, 33];
-    let has_code = error
-        .raw_os_error()
-        .is_some_and(|code| CODES.contains(&code));
+    let has_code = error.raw_os_error().is_some_and(|code| CODES.contains(&code));
     has_code
         || matches!(
             error.kind(),

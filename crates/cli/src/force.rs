@@ -34,10 +34,8 @@ at this distance of the contact from the base.
 With --baseline or a column contact, the change of curvature is that from the mean of the frames without contact, and their scatter \
 gives a standard deviation of each force. The scene's [uncertainty] may give curvature_sd_per_mm, contact_sd_mm and angle_sd_deg.";
 
-const AXIS_HELP: [&str; 2] = [
-    "Tangent of the bent whisker at its base",
-    "Axis of the follicle, which a push turns",
-];
+const AXIS_HELP: [&str; 2] =
+    ["Tangent of the bent whisker at its base", "Axis of the follicle, which a push turns"];
 
 #[derive(Debug, Args)]
 #[command(
@@ -72,9 +70,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         true => ForceMethod::Model,
         false => ForceMethod::Lever,
     };
-    let table = args
-        .columns
-        .table(&args.frames, &CurvatureFrames::COLUMNS)?;
+    let table = args.columns.table(&args.frames, &CurvatureFrames::COLUMNS)?;
     let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
     notes(&read.note);
     let baseline = read.baseline(&whisker, args.baseline)?;
@@ -97,13 +93,7 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         ..ForceOptions::new(method)
     };
     let frames = &read.frames;
-    let found = forces_until(
-        &whisker,
-        &scene.pole,
-        frames,
-        &options,
-        &AtomicBool::new(false),
-    );
+    let found = forces_until(&whisker, &scene.pole, frames, &options, &AtomicBool::new(false));
     warnings(force::warnings(&whisker, &found));
     let marks = match method {
         ForceMethod::Model => StrainMark::of_rows(&whisker, &scene.pole, &found),

@@ -157,11 +157,9 @@ fn flag(option: &str) -> String {
 impl From<TrackingError> for Failure {
     fn from(why: TrackingError) -> Self {
         match why {
-            TrackingError::Option {
-                option,
-                value,
-                must,
-            } => Self::Input(format!("{} {value}: {must}", flag(option))),
+            TrackingError::Option { option, value, must } => {
+                Self::Input(format!("{} {value}: {must}", flag(option)))
+            }
             why => Self::Input(why.to_string()),
         }
     }

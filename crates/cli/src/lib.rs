@@ -67,12 +67,7 @@ use whiskmap::store::TemporaryFiles;
 
 /// Compute where a whisker pushed against a pole stays in contact, slips off or is pulled off
 #[derive(Debug, Parser)]
-#[command(
-    name = "whiskmap",
-    version,
-    bin_name = "whiskmap",
-    arg_required_else_help = true
-)]
+#[command(name = "whiskmap", version, bin_name = "whiskmap", arg_required_else_help = true)]
 #[command(help_template = overview::template(), after_help = overview::EXAMPLES)]
 struct Arguments {
     #[command(subcommand)]
@@ -177,10 +172,7 @@ fn start(command: &Command) -> Result<(), Failure> {
 
 /// Returns a converter of errors from starting `count` threads.
 fn unstarted<E: ToString>(count: usize) -> impl FnOnce(E) -> Failure {
-    move |cause| Failure::Threads {
-        count,
-        cause: cause.to_string(),
-    }
+    move |cause| Failure::Threads { count, cause: cause.to_string() }
 }
 
 /// Environment variable with the number of threads, as of other programs that use rayon; without it, and if it is 0, all cores are used.

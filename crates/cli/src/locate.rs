@@ -104,13 +104,7 @@ fn base_angle(text: &str) -> Result<f64, String> {
 /// Returns a standard deviation if it is positive.
 fn positive(number: Result<f64, String>) -> Result<f64, String> {
     let must = || "must be more than 0".to_owned();
-    number.and_then(|number| {
-        if number > 0.0 {
-            Ok(number)
-        } else {
-            Err(must())
-        }
-    })
+    number.and_then(|number| if number > 0.0 { Ok(number) } else { Err(must()) })
 }
 
 fn moment_sd(text: &str) -> Result<f64, String> {
@@ -146,9 +140,7 @@ impl LocateArgs {
             ("--base-force-x", self.base_force_x),
             ("--base-force-y", self.base_force_y),
         ];
-        let mut given = options
-            .iter()
-            .filter_map(|(name, value)| Some((name, (*value)?)));
+        let mut given = options.iter().filter_map(|(name, value)| Some((name, (*value)?)));
         match (given.next(), given.next()) {
             (Some((name, value)), None) => {
                 let value = digits(value);
@@ -184,10 +176,8 @@ pub fn run(args: &LocateArgs, files: &mut Files) -> Result<(), Failure> {
     let readings = args.readings()?;
     let mut outputs = args.outputs.open(files)?;
     let deviations = args.moment_sd.zip(args.force_sd);
-    let deviations = deviations.map(|(moment_nnm, force_un)| SensorDeviations {
-        moment_nnm,
-        force_un,
-    });
+    let deviations =
+        deviations.map(|(moment_nnm, force_un)| SensorDeviations { moment_nnm, force_un });
     let locator = Locator::new(&whisker, &scene.pole);
     let located = locator.locate(&readings, deviations);
     warnings(locate::warning(&located));

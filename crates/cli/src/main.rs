@@ -12,10 +12,7 @@ fn main() -> ExitCode {
 ///
 /// Vulkan drivers open a Wayland display, and its library prints an error without an absolute path. Only an administrator can
 /// create sockets in `/`, so no display is found there.
-#[allow(
-    unsafe_code,
-    reason = "the environment is changed before any thread is started"
-)]
+#[allow(unsafe_code, reason = "the environment is changed before any thread is started")]
 fn quiet_wayland() {
     const FOLDER: &str = "XDG_RUNTIME_DIR";
     if std::env::var_os(FOLDER).is_none_or(|folder| !Path::new(&folder).is_absolute()) {

@@ -75,20 +75,13 @@ mod tests {
     fn mentioned(text: &str) -> BTreeSet<&str> {
         let words = text.split(|c: char| c != '-' && !c.is_ascii_alphanumeric());
         let options = words.filter_map(|word| word.strip_prefix("--"));
-        options
-            .filter(|name| !name.starts_with('-'))
-            .filter(|name| !name.is_empty())
-            .collect()
+        options.filter(|name| !name.starts_with('-')).filter(|name| !name.is_empty()).collect()
     }
 
     /// Returns the options of a command, without `--help` and `--version`.
     fn defined(command: &Command) -> BTreeSet<&str> {
-        let options = command
-            .get_arguments()
-            .filter_map(|argument| argument.get_long());
-        options
-            .filter(|name| !["help", "version"].contains(name))
-            .collect()
+        let options = command.get_arguments().filter_map(|argument| argument.get_long());
+        options.filter(|name| !["help", "version"].contains(name)).collect()
     }
 
     #[test]
@@ -107,9 +100,7 @@ mod tests {
             let row = format!("\n| `{name}` | ");
             assert!(start.contains(&row), "no row of {name} in the first table");
             let mentioned = mentioned(section);
-            let unnamed = defined(command)
-                .into_iter()
-                .filter(|option| !mentioned.contains(option));
+            let unnamed = defined(command).into_iter().filter(|option| !mentioned.contains(option));
             missing.extend(unnamed.map(|option| format!("{name} --{option}")));
         }
         assert!(missing.is_empty(), "{missing:?}");
@@ -120,10 +111,8 @@ mod tests {
         let program = definitions();
         let known: BTreeSet<&str> = program.get_subcommands().flat_map(defined).collect();
         let mentioned = mentioned(PAGE);
-        let unknown: Vec<_> = mentioned
-            .difference(&known)
-            .filter(|name| **name != "help")
-            .collect();
+        let unknown: Vec<_> =
+            mentioned.difference(&known).filter(|name| **name != "help").collect();
         assert!(unknown.is_empty(), "{unknown:?}");
     }
 }

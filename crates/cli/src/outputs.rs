@@ -29,11 +29,7 @@ pub struct OutputTable {
 impl OutputTable {
     /// Begins a CSV table in the output.
     pub fn new(output: Output) -> Self {
-        Self {
-            table: TableFile::new(output),
-            units: ColumnUnits::default(),
-            has_header: false,
-        }
+        Self { table: TableFile::new(output), units: ColumnUnits::default(), has_header: false }
     }
 
     /// Appends `rows` to the CSV table.
@@ -111,11 +107,7 @@ impl PlotArgs {
         let must = || format!("--plot {}: must end in .png, .svg or .pdf", path.display());
         let format = PictureFormat::of(path).ok_or_else(|| Failure::Input(must()))?;
         let output = files.output("--plot", path)?;
-        Ok(Some(PictureFile {
-            output,
-            format,
-            size,
-        }))
+        Ok(Some(PictureFile { output, format, size }))
     }
 }
 
@@ -138,10 +130,7 @@ impl OutputArgs {
     ) -> Result<Option<OutputTable>, Failure> {
         let units = ColumnUnits::new(&self.units)?;
         let output = path.map(|path| files.output(option, path)).transpose()?;
-        Ok(output.map(|output| OutputTable {
-            units,
-            ..OutputTable::new(output)
-        }))
+        Ok(output.map(|output| OutputTable { units, ..OutputTable::new(output) }))
     }
 }
 

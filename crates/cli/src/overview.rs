@@ -11,16 +11,7 @@ const TOPICS: [(&str, &[&str]); 6] = [
     ("Stores of large sweeps", &["submit", "status", "extract"]),
     (
         "One whisker",
-        &[
-            "curve",
-            "branch",
-            "shape",
-            "sensitivity",
-            "whisk",
-            "texture",
-            "fit",
-            "design",
-        ],
+        &["curve", "branch", "shape", "sensitivity", "whisk", "texture", "fit", "design"],
     ),
     ("Films and sensors", &["import", "force", "locate"]),
     ("Checks", &["verify", "reproduce", "bench", "devices"]),
@@ -43,30 +34,19 @@ pub fn template() -> String {
     let commands = commands();
     let styles = Styles::styled();
     let (header, literal) = (styles.get_header(), styles.get_literal());
-    let wide = commands
-        .get_subcommands()
-        .map(|command| command.get_name().len());
+    let wide = commands.get_subcommands().map(|command| command.get_name().len());
     let wide = wide.max().unwrap_or_default();
     let mut template = "{about-with-newline}\n{usage-heading} {usage}\n".to_owned();
     // Writing to a String cannot fail.
     for (topic, names) in TOPICS {
         let _ = writeln!(template, "\n{header}{topic}:{header:#}");
-        for command in names
-            .iter()
-            .filter_map(|name| commands.find_subcommand(name))
-        {
+        for command in names.iter().filter_map(|name| commands.find_subcommand(name)) {
             let name = command.get_name();
-            let about = command
-                .get_about()
-                .map(ToString::to_string)
-                .unwrap_or_default();
+            let about = command.get_about().map(ToString::to_string).unwrap_or_default();
             let _ = writeln!(template, "  {literal}{name:wide$}{literal:#}  {about}");
         }
     }
-    let _ = write!(
-        template,
-        "\n{header}Options:{header:#}\n{{options}}{{after-help}}"
-    );
+    let _ = write!(template, "\n{header}Options:{header:#}\n{{options}}{{after-help}}");
     template
 }
 
@@ -82,15 +62,10 @@ mod tests {
     #[test]
     fn every_command_has_one_topic() {
         let commands = commands();
-        let mut defined: Vec<&str> = commands
-            .get_subcommands()
-            .map(Definitions::get_name)
-            .collect();
-        let mut listed: Vec<&str> = TOPICS
-            .into_iter()
-            .flat_map(|(_, names)| names)
-            .copied()
-            .collect();
+        let mut defined: Vec<&str> =
+            commands.get_subcommands().map(Definitions::get_name).collect();
+        let mut listed: Vec<&str> =
+            TOPICS.into_iter().flat_map(|(_, names)| names).copied().collect();
         defined.sort_unstable();
         listed.sort_unstable();
         assert_eq!(listed, defined);
@@ -99,14 +74,8 @@ mod tests {
     /// The lines of a template are not wrapped.
     #[test]
     fn the_list_of_commands_fits_a_terminal() {
-        let help = Definitions::new("")
-            .help_template(template())
-            .render_help()
-            .to_string();
-        let lines: Vec<&str> = help
-            .lines()
-            .filter(|line| line.chars().count() > 100)
-            .collect();
+        let help = Definitions::new("").help_template(template()).render_help().to_string();
+        let lines: Vec<&str> = help.lines().filter(|line| line.chars().count() > 100).collect();
         assert!(lines.is_empty(), "{lines:#?}");
     }
 }

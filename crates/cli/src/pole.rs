@@ -125,10 +125,8 @@ const TITLE_DIGITS: usize = 6;
 
 /// Returns the title of a chart of the scene, with poles at these distances.
 pub fn title(scene: &Scene, distances_mm: &[f64]) -> String {
-    let distances: Vec<String> = distances_mm
-        .iter()
-        .map(|mm| digits(rounded(*mm, TITLE_DIGITS)))
-        .collect();
+    let distances: Vec<String> =
+        distances_mm.iter().map(|mm| digits(rounded(*mm, TITLE_DIGITS))).collect();
     format!("{}, touched at {} mm", scene.title, distances.join(", "))
 }
 

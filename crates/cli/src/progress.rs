@@ -65,11 +65,7 @@ struct ProgressLines {
 
 impl ProgressLines {
     const fn over(count: u64, things: &'static str) -> Self {
-        Self {
-            count,
-            things,
-            next: INTERVAL,
-        }
+        Self { count, things, next: INTERVAL }
     }
 
     /// Returns the line that is due at `time` since the start, if any, when `done` are done.

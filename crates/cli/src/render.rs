@@ -50,12 +50,7 @@ pub struct RenderArgs {
     #[arg(long, requires = "channel", conflicts_with = "log")]
     linear: bool,
     /// Ends of the colour bar; values beyond them have the colours of the ends
-    #[arg(
-        long,
-        value_name = "A,B",
-        requires = "channel",
-        allow_hyphen_values = true
-    )]
+    #[arg(long, value_name = "A,B", requires = "channel", allow_hyphen_values = true)]
     range: Option<String>,
     /// Width of the picture in pixels, from 300 to 8000 [default: by the map, about 1500]
     #[arg(long, value_name = "PX", conflicts_with = "size", value_parser = whole(300..=8000))]
@@ -103,9 +98,7 @@ pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
         channels(&map.channels(), &[name])?;
     }
     let ends = args.range.as_deref().zip(channel);
-    let range = ends
-        .map(|(text, channel)| range(text, channel))
-        .transpose()?;
+    let range = ends.map(|(text, channel)| range(text, channel)).transpose()?;
     let size = match args.width {
         Some(pixels) => PictureSize::Width(pixels),
         None => args.size.picture().map_err(Failure::Input)?,
@@ -157,9 +150,7 @@ fn target(
     let path = match &args.output {
         Some(path) => path.clone(),
         None => {
-            let chosen = map
-                .readable()
-                .map(|(name, value)| format!("{name}={value}"));
+            let chosen = map.readable().map(|(name, value)| format!("{name}={value}"));
             let parts = chosen.chain(args.channel.clone());
             let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
             beside(args, map, files)?.with_extension(parts.join("."))
@@ -175,11 +166,7 @@ fn target(
     }
     let output = files.output("--output", &path)?;
     match PictureFormat::of(&path).or(is_stdout.then_some(PictureFormat::Png)) {
-        Some(format) => Ok(PictureFile {
-            output,
-            format,
-            size,
-        }),
+        Some(format) => Ok(PictureFile { output, format, size }),
         None => refuse("must end in .png, .svg or .pdf, or be - for PNG on standard output"),
     }
 }

@@ -101,11 +101,7 @@ pub fn run(args: &ReproduceArgs, files: &mut Files) -> Result<(), Failure> {
         let tables = tables.collect::<Result<Vec<_>, _>>()?;
         let mut picture = |ending, format| {
             let output = open(figure.name, ending)?;
-            Ok::<_, Failure>(PictureFile {
-                output,
-                format,
-                size,
-            })
+            Ok::<_, Failure>(PictureFile { output, format, size })
         };
         let pictures = [
             picture("png", PictureFormat::Png)?,

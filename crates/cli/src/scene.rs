@@ -14,10 +14,7 @@ pub fn read_scene(path: &Path) -> Result<Scene, Failure> {
     notes(scene.notes());
     if let Some(traced) = scene.traced() {
         let length_mm = scene.whisker.length_mm;
-        message(&format!(
-            "note: whisker.rest: {}",
-            fitted(traced, length_mm)
-        ));
+        message(&format!("note: whisker.rest: {}", fitted(traced, length_mm)));
     }
     if let Some(smooth) = scene.smooth_radii() {
         message(&format!(
@@ -63,17 +60,8 @@ pub fn check_strict(is_strict: bool, scene: &Scene) -> Result<(), Failure> {
 
 /// Describes the fit to traced points of a whisker with this length.
 fn fitted(traced: &TracedShape, length_mm: f64) -> String {
-    let TracedShape {
-        degree,
-        rms_mm,
-        points_mm,
-        ..
-    } = traced;
-    let chosen = if traced.is_degree_chosen {
-        ", chosen by cross-validation"
-    } else {
-        ""
-    };
+    let TracedShape { degree, rms_mm, points_mm, .. } = traced;
+    let chosen = if traced.is_degree_chosen { ", chosen by cross-validation" } else { "" };
     let length = rounded(traced.length_mm, 6);
     let scaled = if length_mm == traced.length_mm {
         String::new()

@@ -97,9 +97,7 @@ pub fn channels(known: &[&'static str], wanted: &[&str]) -> Result<Vec<&'static 
     if let Some(name) = wanted.iter().find(|name| !known.contains(name)) {
         let hint = did_you_mean(name, known.iter().copied());
         let known = known.join(", ");
-        return Err(Failure::Input(format!(
-            "--channel {name}: must be one of {known}{hint}"
-        )));
+        return Err(Failure::Input(format!("--channel {name}: must be one of {known}{hint}")));
     }
     let is_wanted = |name: &&str| wanted.is_empty() || wanted.contains(name);
     Ok(known.iter().copied().filter(is_wanted).collect())

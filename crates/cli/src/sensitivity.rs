@@ -44,18 +44,9 @@ pub fn run(args: &SensitivityArgs, files: &mut Files) -> Result<(), Failure> {
     let distance = args.distance.unwrap_or(distances[distances.len() / 2]);
     let mut outputs = args.outputs.open(files)?;
     let rows = effects(&scene, distance);
-    let marked = rows
-        .iter()
-        .map(|row| Marked(row, YieldMark::new(&whisker, row.max_strain)));
+    let marked = rows.iter().map(|row| Marked(row, YieldMark::new(&whisker, row.max_strain)));
     outputs.rows(marked)?;
     outputs.finish(title(&scene, &[distance]), || sensitivities(&rows))?;
-    let unresolved = rows
-        .iter()
-        .filter(|row| row.kind == DetachmentKind::Unresolved);
-    check_resolved(
-        unresolved.count() as u64,
-        rows.len() as u64,
-        "rows",
-        "the column `kind`",
-    )
+    let unresolved = rows.iter().filter(|row| row.kind == DetachmentKind::Unresolved);
+    check_resolved(unresolved.count() as u64, rows.len() as u64, "rows", "the column `kind`")
 }

@@ -96,17 +96,10 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
     let mark = YieldMark::new(&whisker, shape.state.peak_strain);
     let state_file = write_table(state_table, [Marked(&shape.state, mark)])?;
-    let (stroke, name) = if stable {
-        (Stroke::Solid, "stable")
-    } else {
-        (Stroke::Dashed, "unstable")
-    };
-    let drawn = DrawnShape {
-        shape,
-        ink: Ink::Black,
-        stroke,
-        name: format!("{name}, {push_deg} deg"),
-    };
+    let (stroke, name) =
+        if stable { (Stroke::Solid, "stable") } else { (Stroke::Dashed, "unstable") };
+    let drawn =
+        DrawnShape { shape, ink: Ink::Black, stroke, name: format!("{name}, {push_deg} deg") };
     let plot = || {
         let mut plot = shapes("", &[drawn]);
         let at_rest = branch.at_rest(count);

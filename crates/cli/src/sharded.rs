@@ -130,10 +130,7 @@ pub fn fill(
         disk::check(folder, MapFormat::Zarr, scene, &plan)?;
     }
     for file in store.begin(temporary)? {
-        message(&format!(
-            "warning: {} was damaged: rewritten",
-            file.display()
-        ));
+        message(&format!("warning: {} was damaged: rewritten", file.display()));
     }
     message(&format!(
         "engine: {} ({}); blocks: {} of {}",
@@ -166,17 +163,12 @@ fn write_blocks(
         let keep = |panels: &mut Vec<Panel>| {
             let bands = panels.par_iter().map(|panel| store.pack(panel));
             for band in bands.collect::<Vec<_>>() {
-                match packed
-                    .last_mut()
-                    .filter(|last| last.cells() < cells_of_panel)
-                {
+                match packed.last_mut().filter(|last| last.cells() < cells_of_panel) {
                     Some(begun) => begun.append(band),
                     None => packed.push(band),
                 }
             }
-            let is_whole = packed
-                .last()
-                .is_some_and(|last| last.cells() == cells_of_panel);
+            let is_whole = packed.last().is_some_and(|last| last.cells() == cells_of_panel);
             if let Some((&block, whiskers)) = next
                 && is_whole
                 && packed.len() == whiskers.len()
@@ -211,10 +203,8 @@ fn written(thread: Option<ScopedJoinHandle<'_, Result<(), StoreError>>>) -> Resu
 /// # Errors
 /// If a file cannot be read, because it may be complete.
 fn unfinished(store: &ZarrStore, blocks: Vec<usize>) -> Result<Vec<usize>, Failure> {
-    let states: Vec<BlockState> = blocks
-        .par_iter()
-        .map(|block| store.state(*block, CheckDepth::Values))
-        .collect();
+    let states: Vec<BlockState> =
+        blocks.par_iter().map(|block| store.state(*block, CheckDepth::Values)).collect();
     let mut unfinished = Vec::new();
     for (block, state) in blocks.into_iter().zip(states) {
         match state {

@@ -14,9 +14,7 @@ pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()>
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
     use signal_hook::{iterator::Signals, low_level};
 
-    let handled = [SIGHUP, SIGINT, SIGTERM]
-        .into_iter()
-        .filter(|signal| !is_ignored(*signal));
+    let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
     // Without handlers, the default action ends the process, and the next run removes its leftovers.
     let Ok(mut signals) = Signals::new(handled) else {
         return Ok(());
@@ -52,16 +50,11 @@ fn clean_up(temporary: &TemporaryFiles, what: &str, advice: &str) {
     if io::stderr().is_terminal() {
         message("");
     }
-    message(&format!(
-        "error: interrupted by {what}; unfinished files are removed{advice}"
-    ));
+    message(&format!("error: interrupted by {what}; unfinished files are removed{advice}"));
 }
 
 #[cfg(unix)]
-#[allow(
-    unsafe_code,
-    reason = "no library returns the present action of a signal"
-)]
+#[allow(unsafe_code, reason = "no library returns the present action of a signal")]
 fn is_ignored(signal: i32) -> bool {
     // SAFETY: zeros are a valid `sigaction`, and with no new action the call only writes the present one into it.
     unsafe {

@@ -28,11 +28,7 @@ struct Sides {
 impl SizeArgs {
     /// Returns the size on paper, or the natural size; refuses more pixels than a PNG can have here.
     pub fn picture(&self) -> Result<PictureSize, String> {
-        let Some(Sides {
-            width_mm,
-            height_mm,
-        }) = self.size
-        else {
+        let Some(Sides { width_mm, height_mm }) = self.size else {
             return Ok(PictureSize::Natural);
         };
         let dpi = f64::from(self.dpi);
@@ -42,11 +38,7 @@ impl SizeArgs {
                 "--dpi {dpi}: gives {pixels:.0} pixels along the longer side; must give at most {MOST_PIXELS}"
             ));
         }
-        Ok(PictureSize::Print(PrintSize {
-            width_mm,
-            height_mm,
-            dpi,
-        }))
+        Ok(PictureSize::Print(PrintSize { width_mm, height_mm, dpi }))
     }
 }
 
@@ -56,10 +48,7 @@ fn sides(text: &str) -> Result<Sides, String> {
         Some((width, height)) => (width, Some(height)),
         None => (text, None),
     };
-    let is_number = |text: &str| {
-        text.trim()
-            .ends_with(|c: char| c.is_ascii_digit() || c == '.')
-    };
+    let is_number = |text: &str| text.trim().ends_with(|c: char| c.is_ascii_digit() || c == '.');
     let unit = height
         .unwrap_or_default()
         .trim_start_matches(|c: char| c.is_ascii_digit() || c == '.' || c == ' ');
@@ -72,10 +61,7 @@ fn sides(text: &str) -> Result<Sides, String> {
         Ok(length) => Err(format!("{length} mm: must be between 10 mm and 2000 mm")),
         Err(_) => Err("must be a width, or width x height, such as 85mm or 180x120mm".to_owned()),
     };
-    Ok(Sides {
-        width_mm: parse(&width)?,
-        height_mm: height.map(parse).transpose()?,
-    })
+    Ok(Sides { width_mm: parse(&width)?, height_mm: height.map(parse).transpose()? })
 }
 
 #[cfg(test)]
@@ -95,19 +81,9 @@ mod tests {
             let sides = sides(text).map(|sides| (sides.width_mm, sides.height_mm));
             assert_eq!(sides, Ok((width, height)), "{text}");
         }
-        for text in [
-            "",
-            "x",
-            "85x",
-            "x60mm",
-            "85pt",
-            "-85mm",
-            "1e9mm",
-            "9mm",
-            "85mmx",
-            "NaN",
-            "85x60x3mm",
-        ] {
+        for text in
+            ["", "x", "85x", "x60mm", "85pt", "-85mm", "1e9mm", "9mm", "85mmx", "NaN", "85x60x3mm"]
+        {
             assert!(sides(text).is_err(), "{text}");
         }
     }

@@ -14,9 +14,7 @@ pub fn time(text: &str) -> Result<String, String> {
     let is_time = days.is_none_or(is_number)
         && rest.split(':').all(is_number)
         && rest.split(':').count() <= 3;
-    is_time
-        .then(|| text.to_owned())
-        .ok_or_else(|| TIMES.to_owned())
+    is_time.then(|| text.to_owned()).ok_or_else(|| TIMES.to_owned())
 }
 
 /// Returns `text` if it is a size of memory that `sbatch --mem` accepts, otherwise what is allowed.
@@ -24,9 +22,7 @@ pub fn memory(text: &str) -> Result<String, String> {
     let number = text.strip_suffix(|c: char| "KMGTkmgt".contains(c));
     let is_size = is_digits(number.unwrap_or(text));
     let must = "must be a whole number with K, M (the default), G or T, such as 500M";
-    is_size
-        .then(|| text.to_owned())
-        .ok_or_else(|| must.to_owned())
+    is_size.then(|| text.to_owned()).ok_or_else(|| must.to_owned())
 }
 
 fn is_digits(text: &str) -> bool {
@@ -55,16 +51,7 @@ mod tests {
     /// The six formats are those of the manual page of `sbatch`.
     #[test]
     fn slurm_times() {
-        for good in [
-            "30",
-            "30:00",
-            "1:00:00",
-            "1-12",
-            "1-12:30",
-            "1-12:30:15",
-            "0",
-            "120:00",
-        ] {
+        for good in ["30", "30:00", "1:00:00", "1-12", "1-12:30", "1-12:30:15", "0", "120:00"] {
             assert_eq!(time(good), Ok(good.to_owned()));
         }
         for bad in [
@@ -87,11 +74,7 @@ mod tests {
         ] {
             assert!(time(bad).is_err(), "{bad}");
         }
-        for (seconds, text) in [
-            (0.1, "0:01:00"),
-            (3600.0, "1:00:00"),
-            (90_061.0, "1-01:02:00"),
-        ] {
+        for (seconds, text) in [(0.1, "0:01:00"), (3600.0, "1:00:00"), (90_061.0, "1-01:02:00")] {
             assert_eq!(time_of(seconds), text);
             assert!(time(text).is_ok());
         }

@@ -71,9 +71,7 @@ pub fn compute(
     bar.finish();
     let summary = result?;
     if let Some(failure) = &summary.engine_failure {
-        message(&format!(
-            "warning: {failure}; the CPU solved the remaining cells"
-        ));
+        message(&format!("warning: {failure}; the CPU solved the remaining cells"));
     }
     Ok(summary)
 }

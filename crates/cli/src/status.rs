@@ -52,9 +52,9 @@ impl StoreBlocks {
             let blocks = (first..all.min(first + TOGETHER)).into_par_iter();
             let states: Vec<_> = blocks
                 .map(|block| match store.state(block, depth) {
-                    BlockState::Done => store
-                        .regimes(block)
-                        .map_err(|fault| BlockState::Damaged(vec![fault])),
+                    BlockState::Done => {
+                        store.regimes(block).map_err(|fault| BlockState::Damaged(vec![fault]))
+                    }
                     state => Err(state),
                 })
                 .collect();
@@ -88,11 +88,7 @@ impl StoreBlocks {
 pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure> {
     let store = ZarrStore::open(&args.store)?;
     let is_thorough = args.verify || args.repair;
-    let depth = if is_thorough {
-        CheckDepth::Values
-    } else {
-        CheckDepth::Structure
-    };
+    let depth = if is_thorough { CheckDepth::Values } else { CheckDepth::Structure };
     let metadata = match store.metadata_faults() {
         // Without --verify, a store of another version is not a failure.
         Err(StoreError::OtherVersion(..)) if !is_thorough => Vec::new(),
@@ -112,12 +108,7 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
     if is_sound {
         return Ok(());
     }
-    Err(Failure::Incomplete {
-        store: args.store.clone(),
-        missing,
-        damaged,
-        metadata,
-    })
+    Err(Failure::Incomplete { store: args.store.clone(), missing, damaged, metadata })
 }
 
 fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
@@ -126,11 +117,7 @@ fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
     let mut out = StandardOutput::open();
     writeln!(out, "{}", store.scene.title)?;
     writeln!(out, "{:>12}  of {} blocks", found.done, store.block_count())?;
-    writeln!(
-        out,
-        "{:>12}  of {cells} cells",
-        found.regimes.iter().sum::<u64>()
-    )?;
+    writeln!(out, "{:>12}  of {cells} cells", found.regimes.iter().sum::<u64>())?;
     for (regime, cells) in Regime::ALL.iter().zip(found.regimes) {
         if cells > 0 {
             writeln!(out, "{cells:>12}  {}", regime.name())?;
@@ -143,11 +130,7 @@ fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {
         writeln!(out, "missing blocks: {}", ranges(&found.missing))?;
     }
     if !found.damaged.is_empty() {
-        let damaged: Vec<_> = found
-            .damaged
-            .iter()
-            .map(|&block| block..block + 1)
-            .collect();
+        let damaged: Vec<_> = found.damaged.iter().map(|&block| block..block + 1).collect();
         writeln!(out, "damaged blocks: {}", ranges(&damaged))?;
     }
     Ok(())

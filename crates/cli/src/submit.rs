@@ -180,15 +180,9 @@ impl SubmitArgs {
         let partition = self.partition.as_ref();
         let partition = partition.map_or_else(String::new, |name| format!(" --partition={name}"));
         // `auto` may select different engines on different nodes.
-        let engine = if map.solver.engine.is_named() {
-            ""
-        } else {
-            " --engine cpu"
-        };
+        let engine = if map.solver.engine.is_named() { "" } else { " --engine cpu" };
         let words = self.map.iter();
-        let options: String = words
-            .map(|word| format!(" {}", word_of_shell(word)))
-            .collect();
+        let options: String = words.map(|word| format!(" {}", word_of_shell(word))).collect();
         let status = word_of_shell(&format!("{program} status --verify {store}"));
         let shards = self.shards;
         Ok(format!(
@@ -223,14 +217,10 @@ fn absolute(what: &str, path: &Path) -> Result<PathBuf, Failure> {
 
 /// Returns a path as one word of the shell.
 fn quoted(what: &str, path: &Path) -> Result<String, Failure> {
-    let text = path
-        .to_str()
-        .filter(|text| !text.contains(char::is_control));
+    let text = path.to_str().filter(|text| !text.contains(char::is_control));
     text.map(word_of_shell).ok_or_else(|| {
         let path = path.display();
-        Failure::Input(format!(
-            "{what} {path:?}: must be UTF-8 without line breaks"
-        ))
+        Failure::Input(format!("{what} {path:?}: must be UTF-8 without line breaks"))
     })
 }
 

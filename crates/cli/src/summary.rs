@@ -47,44 +47,22 @@ fn print(scene: &Scene, summary: &Summary, seconds: f64, files: &[PathBuf]) -> i
         writeln!(out, "{:>12}  solved by the engine {name}", engine.solved)?;
     }
     for (count, what) in [
-        (
-            summary.trajectories,
-            "trajectories of nets integrated by the engine",
-        ),
-        (
-            engine.fallback(),
-            "not certified by the engine, and refined in f64",
-        ),
-        (
-            engine.without_row,
-            "without a row of a net, and refined in f64",
-        ),
-        (
-            engine.on_cpu_instead,
-            "solved by the CPU in f64 after the engine had failed",
-        ),
+        (summary.trajectories, "trajectories of nets integrated by the engine"),
+        (engine.fallback(), "not certified by the engine, and refined in f64"),
+        (engine.without_row, "without a row of a net, and refined in f64"),
+        (engine.on_cpu_instead, "solved by the CPU in f64 after the engine had failed"),
         (summary.audit.cells, "of the engine's cells audited in f64"),
-        (
-            summary.audit.differing,
-            "of them differed by more than the audit allows",
-        ),
+        (summary.audit.differing, "of them differed by more than the audit allows"),
         (summary.toward_base, "slide toward the base"),
         (summary.sticking, "stick where their last sliding ended"),
-        (
-            summary.without_state,
-            "in contact, whose state with friction was not found",
-        ),
+        (summary.without_state, "in contact, whose state with friction was not found"),
         (summary.yielding, "beyond the yield strain"),
     ] {
         if count > 0 {
             writeln!(out, "{count:>12}  {what}")?;
         }
     }
-    writeln!(
-        out,
-        "{:>12}  disagreements between cells and boundaries",
-        summary.disagreements
-    )?;
+    writeln!(out, "{:>12}  disagreements between cells and boundaries", summary.disagreements)?;
     let rate = summary.cells() as f64 / seconds;
     writeln!(out, "{rate:>12.0}  cells/s, in {seconds:.2} s")?;
     let stages =

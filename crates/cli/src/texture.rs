@@ -63,9 +63,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let surface = scene.surface.ok_or_else(|| {
         let path = args.whisker.scene.display();
         let keys = "distance_mm, spacing_um, asperity_radius_um and length_mm";
-        Failure::Input(format!(
-            "{path}: the scene has no [surface]: add that table, with {keys}"
-        ))
+        Failure::Input(format!("{path}: the scene has no [surface]: add that table, with {keys}"))
     })?;
     let friction = scene.pole.friction;
     if friction != 0.0 {
@@ -81,21 +79,15 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let dwells = table("--dwells", &args.dwells)?;
     let histogram = table("--histogram", &args.histogram)?;
     let at_mm = args.course.curvature_at;
-    let found = texture_until(
-        &scene.whisker,
-        &surface,
-        &course,
-        at_mm,
-        &AtomicBool::new(false),
-    )
-    .map_err(|why| match why {
-        TextureError::Unresolved { .. } => Failure::Texture(why),
-        TextureError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
-        TextureError::Blocked { .. } | TextureError::Surface(_) => {
-            Failure::Input(format!("{}: {why}", args.whisker.scene.display()))
-        }
-        why => Failure::Input(format!("{}: {why}", args.course.source())),
-    })?;
+    let found = texture_until(&scene.whisker, &surface, &course, at_mm, &AtomicBool::new(false))
+        .map_err(|why| match why {
+            TextureError::Unresolved { .. } => Failure::Texture(why),
+            TextureError::CurvatureAt(why) => Failure::Input(format!("--curvature-at: {why}")),
+            TextureError::Blocked { .. } | TextureError::Surface(_) => {
+                Failure::Input(format!("{}: {why}", args.whisker.scene.display()))
+            }
+            why => Failure::Input(format!("{}: {why}", args.course.source())),
+        })?;
     let marks = StrainMark::of_rows(&scene.whisker, &surface.asperity(), &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
     let paths = [
@@ -104,10 +96,7 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
         write_table(histogram, found.tip_histogram())?,
     ];
     summarise(&found);
-    outputs.finish_chart(
-        || textures(&scene.title, &found),
-        paths.into_iter().flatten(),
-    )
+    outputs.finish_chart(|| textures(&scene.title, &found), paths.into_iter().flatten())
 }
 
 /// Prints the number of events, the energy that detachments lose, and the part of the samples in each phase.
@@ -125,14 +114,8 @@ fn summarise(texture: &Texture) {
         let samples = texture.samples.iter();
         samples.filter(|sample| sample.phase == phase).count()
     };
-    let [stuck, slipping, free] = [
-        TexturePhase::Stuck,
-        TexturePhase::Slipping,
-        TexturePhase::Free,
-    ]
-    .map(phase);
-    message(&format!(
-        "of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"
-    ));
+    let [stuck, slipping, free] =
+        [TexturePhase::Stuck, TexturePhase::Slipping, TexturePhase::Free].map(phase);
+    message(&format!("of {all} samples, {stuck} are stuck, {slipping} slipping, {free} free"));
     warnings(texture.warning());
 }

@@ -60,10 +60,7 @@ impl From<Error> for Failure {
         match error {
             Error::Plan(error) => error.into(),
             Error::Engine(error) => error.into(),
-            Error::Tolerance {
-                tolerance_deg,
-                least,
-            } => Self::Input(format!(
+            Error::Tolerance { tolerance_deg, least } => Self::Input(format!(
                 "--tolerance {tolerance_deg:e}deg: must be at least {:.1e}deg, the estimated error of the finest steps and \
                  of the residual of Newton's method",
                 ROUNDED_UP * least

@@ -69,10 +69,5 @@ pub fn largest(draws: &Draws) -> Vec<LargestSpread> {
 pub fn check(rows: &[EndSpread], draws: &Draws) -> Result<(), Failure> {
     let unresolved = rows.iter().map(|row| row.unresolved).sum();
     let all = rows.len() * draws.len();
-    check_resolved(
-        unresolved,
-        all as u64,
-        "sampled ends",
-        "the column `unresolved`",
-    )
+    check_resolved(unresolved, all as u64, "sampled ends", "the column `unresolved`")
 }

@@ -30,10 +30,7 @@ impl ColumnUnits {
                 let hint = did_you_mean(name, all.iter().copied());
                 return Err(refused(format!("must be one of {}{hint}", all.join(", "))));
             };
-            if let Some(other) = units
-                .iter()
-                .find(|given| kind.units().any(|of| of == **given))
-            {
+            if let Some(other) = units.iter().find(|given| kind.units().any(|of| of == **given)) {
                 return Err(refused(format!(
                     "{other} is a unit of the same quantity; give one of them"
                 )));
@@ -57,12 +54,8 @@ impl ColumnUnits {
         for row in rows {
             writer.serialize(row)?;
         }
-        let text = writer
-            .into_inner()
-            .map_err(csv::IntoInnerError::into_error)?;
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .from_reader(&*text);
+        let text = writer.into_inner().map_err(csv::IntoInnerError::into_error)?;
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(&*text);
         let mut lines = reader
             .records()
             .map(|line| Ok(line?.iter().map(str::to_owned).collect()))
@@ -72,10 +65,7 @@ impl ColumnUnits {
         };
         for (column, name) in header.iter_mut().enumerate() {
             let quantity = Quantity::of(name);
-            let unit = self
-                .0
-                .iter()
-                .find(|unit| quantity.units().any(|of| of == **unit));
+            let unit = self.0.iter().find(|unit| quantity.units().any(|of| of == **unit));
             let Some((unit, (stem, _))) = unit.zip(name.rsplit_once('_')) else {
                 continue;
             };

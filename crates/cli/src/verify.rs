@@ -40,12 +40,7 @@ pub fn run() -> Result<(), Failure> {
             }
         )?;
     }
-    let count = |verdict| {
-        checks
-            .iter()
-            .filter(|check| check.verdict() == verdict)
-            .count()
-    };
+    let count = |verdict| checks.iter().filter(|check| check.verdict() == verdict).count();
     writeln!(
         out,
         "{} of {} checks pass; {} DIFFERS: an independent solver also contradicts the source",
@@ -55,10 +50,7 @@ pub fn run() -> Result<(), Failure> {
     )?;
     let failed = count(CheckVerdict::Fail);
     if failed > 0 {
-        return Err(Failure::Checks {
-            failed,
-            all: checks.len(),
-        });
+        return Err(Failure::Checks { failed, all: checks.len() });
     }
     Ok(())
 }

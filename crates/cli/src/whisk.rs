@@ -63,9 +63,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course()?;
     let mut outputs = args.outputs.open(files)?;
-    let events = args
-        .outputs
-        .table(files, "--events", args.events.as_deref())?;
+    let events = args.outputs.table(files, "--events", args.events.as_deref())?;
     let mut options = WhiskOptions::default();
     options.start = args.start;
     options.curvature_at_mm = args.course.curvature_at;

@@ -45,10 +45,7 @@ impl WhiskTask {
             points.flatten().unwrap_or_else(unknown)
         });
         Ok(Response {
-            numbers: points
-                .flatten()
-                .map(|coordinate| coordinate as f32)
-                .collect(),
+            numbers: points.flatten().map(|coordinate| coordinate as f32).collect(),
             text: json!({
                 "distance_mm": self.distance_mm,
                 "points": POINTS,

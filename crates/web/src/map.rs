@@ -47,9 +47,7 @@ impl MapTask {
             channels.filter(|channel| Some(channel.name()) == self.channel.as_deref());
         let codes = [&panel.regime, &panel.status].into_iter().flatten();
         let codes = codes.map(|code| *code as f32);
-        let values = channel
-            .next()
-            .map_or(&[][..], |channel| panel.channel(channel));
+        let values = channel.next().map_or(&[][..], |channel| panel.channel(channel));
         let spectral = Spectral::default();
         let is_spectral = map.summary.engine_cells.solved > 0;
         let engine = is_spectral.then_some(&spectral as &dyn Engine);

@@ -84,15 +84,10 @@ impl Request {
                 json!({ "toml": scene::toml(&self.one(Vec::new())?, &self.changes()?)? }).into()
             }
             Task::Map(task) => task.respond(&scene)?,
-            Task::State {
-                push_angle_deg,
-                distance_mm,
-            } => traces::state(&scene, *push_angle_deg, *distance_mm)?.into(),
-            Task::Branches {
-                distance_mm,
-                push_angle_deg,
-                count,
-            } => {
+            Task::State { push_angle_deg, distance_mm } => {
+                traces::state(&scene, *push_angle_deg, *distance_mm)?.into()
+            }
+            Task::Branches { distance_mm, push_angle_deg, count } => {
                 let count = (*count).clamp(3, MOST);
                 traces::branches(&scene, *distance_mm, *push_angle_deg, count).into()
             }

@@ -15,9 +15,6 @@ pub struct Response {
 
 impl From<Value> for Response {
     fn from(text: Value) -> Self {
-        Self {
-            text,
-            numbers: Vec::new(),
-        }
+        Self { text, numbers: Vec::new() }
     }
 }

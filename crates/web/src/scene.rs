@@ -49,11 +49,9 @@ pub fn description(scene: &Scene, sweep: &Scene, place: &SweepPlace) -> Result<V
 
 /// Returns the number of `parameter`: the scene's own, or else the neutral one. `None` if the scene cannot have the parameter.
 fn number(scene: &Scene, parameter: Parameter) -> Option<f64> {
-    parameter.value(scene).or_else(|| {
-        parameter
-            .neutral()
-            .filter(|value| scene.with(parameter, *value).is_ok())
-    })
+    parameter
+        .value(scene)
+        .or_else(|| parameter.neutral().filter(|value| scene.with(parameter, *value).is_ok()))
 }
 
 /// Returns the TOML text of `scene` with other `values` of parameters, in their units; its comments stay.

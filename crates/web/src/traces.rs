@@ -47,10 +47,7 @@ pub fn state(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, St
 
 /// Regime, status and values of a cell that no push from first touch reaches.
 fn cell(scene: &Scene, push_deg: f64, distance_mm: f64) -> Result<Value, String> {
-    let builder = scene
-        .to_builder()
-        .push_angle_deg([push_deg])
-        .distance_mm([distance_mm]);
+    let builder = scene.to_builder().push_angle_deg([push_deg]).distance_mm([distance_mm]);
     let cell = builder.build().map_err(|why| why.to_string())?;
     let map = whiskmap::map(&cell, Options::default()).map_err(|why| why.to_string())?;
     let panel = &map.panels[0];
@@ -116,10 +113,7 @@ pub fn branches(scene: &Scene, distance_mm: f64, push_deg: Option<f64>, count: u
 
 /// Returns the detachments at `count` distances, CF then CB, as from `whiskmap curve`, and the names of its columns in their order.
 pub fn curve(scene: &Scene, [from, to]: [f64; 2], count: usize) -> Result<Value, String> {
-    let scene = scene
-        .to_builder()
-        .distance_mm(AxisValues::linear(from, to, count))
-        .build();
+    let scene = scene.to_builder().distance_mm(AxisValues::linear(from, to, count)).build();
     let scene = scene.map_err(|why| why.to_string())?;
     let curve = whiskmap::curve(&scene, Options::default()).map_err(|why| why.to_string())?;
     let rows = curve.into_iter().map(|(_, end)| end);

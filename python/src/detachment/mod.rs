@@ -16,11 +16,7 @@ use whiskmap::sensitivity::Derivatives;
 use whiskmap::trace::{Detachment, DetachmentKind};
 
 /// Name of a quantity, its value, and its derivative.
-type Quantity = (
-    &'static str,
-    fn(&Detachment) -> Option<f64>,
-    fn(&Derivatives) -> f64,
-);
+type Quantity = (&'static str, fn(&Detachment) -> Option<f64>, fn(&Derivatives) -> f64);
 
 /// Defines the quantities of an end that have derivatives, by the names of their fields.
 macro_rules! quantities {
@@ -42,11 +38,7 @@ const QUANTITIES: [Quantity; 11] = quantities![
 ];
 
 /// Name, values `[row]` and derivatives `[row][variable]` of a quantity; NaN where there is none.
-type QuantityArrays<'py> = (
-    &'static str,
-    Bound<'py, PyArray1<f64>>,
-    Bound<'py, PyArray1<f64>>,
-);
+type QuantityArrays<'py> = (&'static str, Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>);
 
 /// Kinds of the ends, residuals, push angles up to which a whisker may snap, and largest strains of pushes of a scene with a yield strain.
 /// Then quantities, and exceptions of refused rows in order.
@@ -83,23 +75,16 @@ pub fn detachment<'py>(
     for (name, value) in &fixed {
         base = base.set(parameter("argument", name)?, *value);
     }
-    let columns = varying
-        .iter()
-        .map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
-    let variable = |name: String| {
-        name.parse()
-            .map_err(|must: String| refused("jac", &name, &must))
-    };
+    let columns =
+        varying.iter().map(|(name, values)| Ok((parameter("argument", name)?, values.as_slice()?)));
+    let variable = |name: String| name.parse().map_err(|must: String| refused("jac", &name, &must));
     let taper = Parameter::Taper.name();
     let rows = DetachmentRows {
         base: base.push_angle_deg([0.0]),
         varying: columns.collect::<PyResult<_>>()?,
         distance_mm: distance_mm.as_slice()?,
         is_cb: is_cb.as_slice()?,
-        variables: variables
-            .into_iter()
-            .map(variable)
-            .collect::<PyResult<_>>()?,
+        variables: variables.into_iter().map(variable).collect::<PyResult<_>>()?,
         have_taper: fixed.contains_key(taper) || varying.contains_key(taper),
     };
     let (count, width) = (rows.distance_mm.len(), rows.variables.len());
@@ -130,14 +115,7 @@ pub fn detachment<'py>(
     let snaps = values(|end| end.snaps_deg);
     let residuals = values(|end| end.residual);
     let strains = is_marked.then(|| of_rows(&|row_end| row_end.mark?.max_strain));
-    Ok((
-        kinds,
-        residuals,
-        snaps,
-        strains,
-        quantities.into(),
-        refused.collect(),
-    ))
+    Ok((kinds, residuals, snaps, strains, quantities.into(), refused.collect()))
 }
 
 /// Returns the exception of a refused row, with its index as the attribute `element`.

@@ -102,11 +102,7 @@ impl DetachmentRows<'_> {
             let Some(first) = rows.first() else {
                 return (None, refused);
             };
-            let side = if self.is_cb[*first] {
-                Side::Cb
-            } else {
-                Side::Cf
-            };
+            let side = if self.is_cb[*first] { Side::Cb } else { Side::Cf };
             let mut distances: Vec<f64> = rows.iter().map(|row| self.distance_mm[*row]).collect();
             distances.dedup();
             let mut builder = self.base.clone().distance_mm(&*distances);
@@ -115,12 +111,7 @@ impl DetachmentRows<'_> {
             }
             let why = match builder.build() {
                 Ok(scene) => {
-                    let checked = CheckedRows {
-                        scene,
-                        side,
-                        distances,
-                        rows,
-                    };
+                    let checked = CheckedRows { scene, side, distances, rows };
                     return (Some(checked), refused);
                 }
                 Err(why) => why,
@@ -143,10 +134,7 @@ impl DetachmentRows<'_> {
     /// The ends of the rows of some whiskers and sides with their derivatives and marks, in any order.
     fn ends_of(&self, checked: &[CheckedRows]) -> Vec<RowEnd> {
         let base = Variable::from(Parameter::BaseRadiusUm);
-        let base = self
-            .variables
-            .iter()
-            .position(|variable| self.have_taper && *variable == base);
+        let base = self.variables.iter().position(|variable| self.have_taper && *variable == base);
         let mut variables = self.variables.clone();
         variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
         let pushed = checked.iter().map(|checked| PushedWhisker {
@@ -158,21 +146,15 @@ impl DetachmentRows<'_> {
         let pushed: Vec<PushedWhisker> = pushed.collect();
         let found = detachments_of(Resolution::FINE, &pushed, EndDetail::Snaps, &variables);
         let ends = checked.iter().zip(found).flat_map(|(checked, found)| {
-            let CheckedRows {
-                scene,
-                distances,
-                rows,
-                ..
-            } = checked;
+            let CheckedRows { scene, distances, rows, .. } = checked;
             let (whisker, pole) = (&scene.whisker, &scene.pole);
             let end = |derivatives: DetachmentDerivatives| {
                 let mut by: Vec<Option<Derivatives>> =
                     derivatives.by.into_iter().map(Result::ok).collect();
                 if let Some(base) = base {
                     let tip = by.pop().flatten();
-                    by[base] = by[base]
-                        .zip(tip)
-                        .map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
+                    by[base] =
+                        by[base].zip(tip).map(|(base, tip)| base.plus(1.0 - whisker.taper(), &tip));
                 }
                 let mark = PushMark::of_end(whisker, pole, &derivatives.end);
                 (derivatives.end, by, mark)

@@ -69,9 +69,7 @@ pub fn adapters() -> Vec<AdapterReport> {
 
 /// Index of the first `good` adapter of the best kind.
 fn best(reports: &[AdapterReport], good: impl Fn(&AdapterReport) -> bool) -> Option<usize> {
-    (0..reports.len())
-        .filter(|&i| good(&reports[i]))
-        .min_by_key(|&i| reports[i].ranked_kind().0)
+    (0..reports.len()).filter(|&i| good(&reports[i])).min_by_key(|&i| reports[i].ranked_kind().0)
 }
 
 /// Returns the index of the adapter that the engine uses by default: the first of the best kind that has this precision; `None` without
@@ -87,16 +85,10 @@ pub fn preferred(reports: &[AdapterReport], precision: Precision) -> Option<usiz
 pub fn named(reports: &[AdapterReport], part: &str, precision: Precision) -> Option<usize> {
     let part = part.to_lowercase();
     let is_named = |report: &AdapterReport| {
-        let AdapterInfo {
-            name,
-            device_pci_bus_id,
-            ..
-        } = &report.info;
+        let AdapterInfo { name, device_pci_bus_id, .. } = &report.info;
         let is_part = name.to_lowercase().contains(&part);
         !part.is_empty() && (is_part || device_pci_bus_id.to_lowercase() == part)
     };
-    best(reports, |report| {
-        is_named(report) && report.computes_in(precision)
-    })
-    .or_else(|| best(reports, is_named))
+    best(reports, |report| is_named(report) && report.computes_in(precision))
+        .or_else(|| best(reports, is_named))
 }

@@ -8,10 +8,8 @@ use std::ops::Range;
 
 /// Outcomes by the negative number that the shaders write in place of a residual. A kernel that writes nothing leaves zeros, which are no
 /// solution.
-pub const OUTCOMES: [(&str, f32, Outcome); 2] = [
-    ("NEAR_EDGE", -1.0, Outcome::NearEdge),
-    ("MISSED", -2.0, Outcome::Missed),
-];
+pub const OUTCOMES: [(&str, f32, Outcome); 2] =
+    [("NEAR_EDGE", -1.0, Outcome::NearEdge), ("MISSED", -2.0, Outcome::Missed)];
 
 /// Returns the number of planes of a map with these `channels`: residuals, values of channels of a state, and for strains contact and load as two
 /// numbers each.
@@ -31,9 +29,7 @@ fn outcome(residual: f32, is_finite: bool) -> Outcome {
         return Outcome::Solved;
     }
     let mut coded = OUTCOMES.iter().filter(|(_, code, _)| *code == residual);
-    coded
-        .next()
-        .map_or(Outcome::NotFinite, |(.., outcome)| *outcome)
+    coded.next().map_or(Outcome::NotFinite, |(.., outcome)| *outcome)
 }
 
 /// Writes the cells of some `runs` of `batch`, whose planes are in `bytes`, into `cells`.
@@ -42,9 +38,7 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[Range<usize>], cells: 
     let mut from = 0;
     for place in runs {
         let to = from + place.len() * size_of::<f32>();
-        let mut parts = bytes
-            .chunks_exact(size.max(1))
-            .map(|plane| &plane[from..to]);
+        let mut parts = bytes.chunks_exact(size.max(1)).map(|plane| &plane[from..to]);
         let mut copy = |column: &mut [f32]| {
             if let Some(part) = parts.next() {
                 bytemuck::cast_slice_mut(column).copy_from_slice(part);
@@ -53,10 +47,7 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[Range<usize>], cells: 
         let residuals = &mut cells.residual[place.clone()];
         copy(residuals);
         let mut is_finite = residuals.iter().all(|residual| residual.is_finite());
-        let columns = cells
-            .values
-            .iter_mut()
-            .filter_map(|column| column.get_mut(place.clone()));
+        let columns = cells.values.iter_mut().filter_map(|column| column.get_mut(place.clone()));
         for column in columns {
             copy(column);
             is_finite &= column.iter().all(|value| value.is_finite());
@@ -77,10 +68,7 @@ pub fn read_cells(bytes: &[u8], batch: &RowBatch, runs: &[Range<usize>], cells: 
             let is_finite = is_finite
                 || residual.is_finite()
                     && values.into_iter().all(|value| value.is_finite())
-                    && cells
-                        .points
-                        .get(index)
-                        .is_none_or(|point| point.is_finite());
+                    && cells.points.get(index).is_none_or(|point| point.is_finite());
             let outcome = outcome(residual, is_finite);
             cells.outcome[index] = outcome;
             if outcome != Outcome::Solved {
@@ -108,9 +96,8 @@ mod tests {
         let Some(TypeInner::Struct { members, span }) = row.map(|found| &found.inner) else {
             panic!("no struct Row");
         };
-        let offsets = members
-            .iter()
-            .map(|member| (member.name.as_deref().unwrap(), member.offset as usize));
+        let offsets =
+            members.iter().map(|member| (member.name.as_deref().unwrap(), member.offset as usize));
         macro_rules! offsets {
             ($($member:ident)+) => { [$((stringify!($member), offset_of!(GpuRow<T>, $member))),+] };
         }

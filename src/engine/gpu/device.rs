@@ -28,9 +28,7 @@ impl Device {
         let found = enumerate();
         let reports: Vec<_> = found.iter().map(AdapterReport::new).collect();
         let preferred = |precision| preferred(&reports, precision);
-        let index = index
-            .or_else(|| preferred(precision))
-            .or_else(|| preferred(Precision::F32));
+        let index = index.or_else(|| preferred(precision)).or_else(|| preferred(Precision::F32));
         let adapter = index.and_then(|index| found.get(index)).ok_or_else(|| {
             EngineError::NoAdapter(match index {
                 Some(index) => format!("there are {}, not one at {index}", found.len()),
@@ -64,12 +62,7 @@ impl Device {
         handle.set_device_lost_callback(move |reason, message| {
             note(format!("device lost ({reason:?}) {message}"));
         });
-        Ok(Self {
-            info: adapter.get_info(),
-            queue,
-            handle,
-            errors,
-        })
+        Ok(Self { info: adapter.get_info(), queue, handle, errors })
     }
 
     /// Returns the first error of the device since the last call, if any.
@@ -82,10 +75,8 @@ impl Device {
 
     /// Waits until the device has finished all submissions up to `submission`.
     pub fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), EngineError> {
-        let waiting = wgpu::PollType::Wait {
-            submission_index: Some(submission),
-            timeout: Some(PATIENCE),
-        };
+        let waiting =
+            wgpu::PollType::Wait { submission_index: Some(submission), timeout: Some(PATIENCE) };
         let handle = &self.handle;
         let waited = guarded(|| handle.poll(waiting).map_err(|error| error.to_string()));
         self.check()?;

@@ -49,23 +49,12 @@ impl Flight {
         mut buffers: Buffers,
         is_last: bool,
     ) -> Result<Self, EngineError> {
-        let inputs: [&[u8]; 4] = [
-            bytemuck::cast_slice(&packed.heads),
-            &packed.rows,
-            &packed.terms,
-            &packed.pushes,
-        ];
+        let inputs: [&[u8]; 4] =
+            [bytemuck::cast_slice(&packed.heads), &packed.rows, &packed.terms, &packed.pushes];
         let submitted = Instant::now();
         let sizes = [packed.cells, cell_bytes(channels)];
         let index = buffers.submit(device, pipeline, &inputs, "cells", sizes)?;
-        Ok(Self {
-            cells: packed.cells,
-            is_last,
-            runs: packed.runs,
-            submitted,
-            index,
-            buffers,
-        })
+        Ok(Self { cells: packed.cells, is_last, runs: packed.runs, submitted, index, buffers })
     }
 
     /// Waits for the cells, writes them into the cells of the batch, and returns the buffers.

@@ -11,17 +11,12 @@ pub const DRIVER_CALL: &str = "driver call";
 /// Returns the result of `call`, or the message with which it panicked.
 pub(super) fn guarded<T: Send>(call: impl FnOnce() -> T + Send) -> Result<T, String> {
     thread::scope(|scope| {
-        let thread = thread::Builder::new()
-            .name(DRIVER_CALL.to_owned())
-            .spawn_scoped(scope, call);
-        thread
-            .map_err(|error| error.to_string())?
-            .join()
-            .map_err(|payload| {
-                let built = payload.downcast_ref::<String>().map(String::as_str);
-                let message = built.or_else(|| payload.downcast_ref::<&str>().copied());
-                message.unwrap_or("panic without a message").to_owned()
-            })
+        let thread = thread::Builder::new().name(DRIVER_CALL.to_owned()).spawn_scoped(scope, call);
+        thread.map_err(|error| error.to_string())?.join().map_err(|payload| {
+            let built = payload.downcast_ref::<String>().map(String::as_str);
+            let message = built.or_else(|| payload.downcast_ref::<&str>().copied());
+            message.unwrap_or("panic without a message").to_owned()
+        })
     })
 }
 

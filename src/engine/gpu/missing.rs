@@ -10,11 +10,8 @@ const LOADER: &str = "libvulkan.so.1";
 const LIBRARIES: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
 
 /// Folders with the files that name Vulkan drivers.
-const MANIFESTS: [&str; 3] = [
-    "/etc/vulkan/icd.d",
-    "/usr/share/vulkan/icd.d",
-    "/usr/local/share/vulkan/icd.d",
-];
+const MANIFESTS: [&str; 3] =
+    ["/etc/vulkan/icd.d", "/usr/share/vulkan/icd.d", "/usr/local/share/vulkan/icd.d"];
 
 /// Environment variables that name driver files in place of the folders, the newer one first.
 const VARIABLES: [&str; 2] = ["VK_DRIVER_FILES", "VK_ICD_FILENAMES"];
@@ -28,16 +25,11 @@ pub fn missing() -> String {
     if !has_loader() {
         return format!("the Vulkan loader {LOADER} was not found; Debian's package is libvulkan1");
     }
-    let named = VARIABLES
-        .iter()
-        .find_map(|name| Some((*name, env::var_os(name)?)));
+    let named = VARIABLES.iter().find_map(|name| Some((*name, env::var_os(name)?)));
     let (place, files) = match &named {
         Some((name, value)) => {
             let files = env::split_paths(value).filter(|file| file.exists());
-            (
-                format!("{name}={}", value.display()),
-                files.collect::<Vec<_>>(),
-            )
+            (format!("{name}={}", value.display()), files.collect::<Vec<_>>())
         }
         None => (MANIFESTS.join(", "), manifests()),
     };
@@ -73,15 +65,10 @@ fn has_loader() -> bool {
 
 /// The driver files of the system, in order.
 fn manifests() -> Vec<PathBuf> {
-    let folders = MANIFESTS
-        .iter()
-        .filter_map(|folder| fs::read_dir(folder).ok());
+    let folders = MANIFESTS.iter().filter_map(|folder| fs::read_dir(folder).ok());
     let files = folders.flatten().flatten().map(|entry| entry.path());
     let mut files: Vec<PathBuf> = files
-        .filter(|path| {
-            path.extension()
-                .is_some_and(|extension| extension == "json")
-        })
+        .filter(|path| path.extension().is_some_and(|extension| extension == "json"))
         .collect();
     files.sort();
     files
@@ -97,13 +84,8 @@ mod tests {
         assert!(
             none.contains("no file in /etc/vulkan/icd.d") && none.contains("mesa-vulkan-drivers")
         );
-        let some = missing_driver(
-            "/etc/vulkan/icd.d",
-            &[PathBuf::from("/etc/vulkan/icd.d/a.json")],
-        );
-        assert_eq!(
-            some,
-            "no Vulkan driver finds a device: /etc/vulkan/icd.d/a.json"
-        );
+        let some =
+            missing_driver("/etc/vulkan/icd.d", &[PathBuf::from("/etc/vulkan/icd.d/a.json")]);
+        assert_eq!(some, "no Vulkan driver finds a device: /etc/vulkan/icd.d/a.json");
     }
 }

@@ -215,8 +215,7 @@ impl Engine for Gpu {
 
     fn submit(&mut self, batch: Arc<RowBatch>) -> Result<(), EngineError> {
         self.working(|gpu| {
-            gpu.pending
-                .push_back(PendingBatch::new(batch, gpu.precision));
+            gpu.pending.push_back(PendingBatch::new(batch, gpu.precision));
             gpu.send()
         })
     }

@@ -26,11 +26,7 @@ impl Pace {
         let by_bytes = usize::try_from(most_bytes).unwrap_or(usize::MAX) / cell_bytes;
         let by_groups = most_groups as usize * group as usize;
         let most = by_bytes.min(by_groups).min(MOST);
-        Self {
-            cells: FIRST.min(most),
-            most,
-            warm: false,
-        }
+        Self { cells: FIRST.min(most), most, warm: false }
     }
 
     /// Adapts the pace to a submission of `cells` that took at most `time`. The first one of a pipeline is ignored, since it compiles the
@@ -60,11 +56,9 @@ mod tests {
 
     #[test]
     fn limits_hold_whatever_the_times_are() {
-        for (bytes, groups, most) in [
-            (1000, 65_535, 25),
-            (128 << 20, 2, 128),
-            (u64::MAX, u32::MAX, MOST),
-        ] {
+        for (bytes, groups, most) in
+            [(1000, 65_535, 25), (128 << 20, 2, 128), (u64::MAX, u32::MAX, MOST)]
+        {
             let mut pace = Pace::new(bytes, 40, groups, 64);
             for _ in 0..20 {
                 pace.learn(pace.cells, false, Duration::ZERO);

@@ -101,9 +101,7 @@ fn packed<T: Scalar>(batch: &RowBatch, rows: Range<usize>, near_touch: f64) -> P
         let (at_end, quotient) = expansion.inverse.functions.quotient(end);
         let ([slope, ..], [mean, ..]) = (quotient.at(end), quotient.at(0.0));
         for numbers in std::iter::once(&at_end).chain(&quotient.coefficients) {
-            let wanted = groups
-                .iter()
-                .flat_map(|first| &numbers[*first..][..TOGETHER]);
+            let wanted = groups.iter().flat_map(|first| &numbers[*first..][..TOGETHER]);
             terms.extend(wanted.map(|number| T::of(*number)));
         }
         let [tip, tip_radius] = side.sheet.tip;

@@ -28,10 +28,7 @@ impl PendingBatch {
             };
             let pushes = &batch.sides[row.side].columns.pushes;
             let near = precision.near_touch() * expansion.end_push;
-            let near_row = BatchRow {
-                columns: row.columns_before(near, pushes).collect(),
-                ..*row
-            };
+            let near_row = BatchRow { columns: row.columns_before(near, pushes).collect(), ..*row };
             let count = near_row.cells().len();
             if count > 0 {
                 let goal = precision.goal();
@@ -40,12 +37,7 @@ impl PendingBatch {
             }
             expansion.write_beyond(row, pushes, into.outcome);
         }
-        Self {
-            cells,
-            batch,
-            in_flight: 0,
-            sent: 0,
-        }
+        Self { cells, batch, in_flight: 0, sent: 0 }
     }
 
     /// Returns true if a part of the pending batch is still to be sent.

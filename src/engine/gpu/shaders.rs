@@ -10,10 +10,8 @@ use whiskmap_mechanics::rod::{CURVATURE_TERMS, Effects};
 use whiskmap_mechanics::shooting::contact::ARC_TERMS;
 use whiskmap_mechanics::shooting::{Nystrom8, REST_TANGENT, REST_TERMS, StepRule};
 
-const _: () = assert!(
-    CURVATURE_TERMS == 7 && REST_TERMS == 12,
-    "shaders/shoot.wgsl writes them out"
-);
+const _: () =
+    assert!(CURVATURE_TERMS == 7 && REST_TERMS == 12, "shaders/shoot.wgsl writes them out");
 
 const CHANNELS: usize = STATE_CHANNELS.len();
 
@@ -91,13 +89,8 @@ fn rest_terms() -> String {
 /// A function for the series of `atanh(w)/w` in the square of `w`.
 fn arc_series() -> String {
     let terms = (0..ARC_TERMS).map(|k| format!("real({:e})", 1.0 / f64::from(2 * k + 1)));
-    let sum = terms
-        .rev()
-        .reduce(|sum, term| format!("({term} + square * {sum})"));
-    format!(
-        "fn arc_series(square: real) -> real {{\nreturn {};\n}}\n",
-        sum.unwrap_or_default()
-    )
+    let sum = terms.rev().reduce(|sum, term| format!("({term} + square * {sum})"));
+    format!("fn arc_series(square: real) -> real {{\nreturn {};\n}}\n", sum.unwrap_or_default())
 }
 
 /// Returns the text of the engine's shader; its entry point is `solve_cells`.

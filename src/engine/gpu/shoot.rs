@@ -41,10 +41,7 @@ struct GpuRod<T> {
 impl<T: Scalar> GpuRod<T> {
     fn new(rod: &Rod, method: Method) -> Self {
         let mut curvature = [T::of(0.0); 8];
-        let polynomial = rod
-            .polynomial
-            .iter()
-            .flat_map(|polynomial| polynomial.centred());
+        let polynomial = rod.polynomial.iter().flat_map(|polynomial| polynomial.centred());
         for (coefficient, term) in curvature.iter_mut().zip(polynomial) {
             *coefficient = T::of(*term);
         }
@@ -227,12 +224,7 @@ impl Gpu {
         let submitted = Instant::now();
         let sizes = [conditions.len(), size_of::<GpuState<T>>()];
         let index = buffers.submit(device, pipeline, &inputs, "states", sizes)?;
-        Ok(Volley {
-            of,
-            submitted,
-            index,
-            buffers,
-        })
+        Ok(Volley { of, submitted, index, buffers })
     }
 }
 
@@ -246,11 +238,9 @@ fn fitting(method: Method, conditions: &[InitialCondition], steps: usize) -> usi
     let (mut count, mut left) = (0, steps);
     for of_rod in conditions.chunk_by(is_same_rod) {
         // The number of steps grows with contact and load.
-        let largest = of_rod
-            .iter()
-            .fold([0.0; 2], |[tau, load]: [f64; 2], other| {
-                [tau.max(other.tau), load.max(other.load.abs())]
-            });
+        let largest = of_rod.iter().fold([0.0; 2], |[tau, load]: [f64; 2], other| {
+            [tau.max(other.tau), load.max(other.load.abs())]
+        });
         let [tau, load] = largest;
         let each = method.resolution.steps(of_rod[0].rod, tau, load).max(1) as usize;
         let fits = of_rod.len().min(left / each);
@@ -316,11 +306,7 @@ mod tests {
     fn a_submission_has_few_steps() {
         let rods = [Rod::default(), Rod::default()];
         let method = Method::fine();
-        let at = |rod: usize, load| InitialCondition {
-            rod: &rods[rod],
-            tau: 0.5,
-            load,
-        };
+        let at = |rod: usize, load| InitialCondition { rod: &rods[rod], tau: 0.5, load };
         let [few, many] =
             [1.0, 1e6].map(|load| method.resolution.steps(&rods[0], 0.5, load) as usize);
         assert!(many > 100 * few);

@@ -42,9 +42,8 @@ fn detachments(whisker: &Whisker) -> Vec<Detachment> {
     let of_side = |side| {
         let reach = reach_mm(whisker, &POLE, side);
         let to_tip = |i: usize| (1.0 - (i + 1) as f64 / DISTANCES as f64).powi(2);
-        let distances: Vec<f64> = (0..DISTANCES)
-            .map(|i| reach * (1.0 - (1.0 - NEAREST) * to_tip(i)))
-            .collect();
+        let distances: Vec<f64> =
+            (0..DISTANCES).map(|i| reach * (1.0 - (1.0 - NEAREST) * to_tip(i))).collect();
         curve(whisker, &POLE, side, &distances)
     };
     Side::BOTH.into_iter().flat_map(of_side).collect()
@@ -79,9 +78,7 @@ pub fn panel(
     });
     let mut plot = curves(title, &drawn.collect::<Vec<_>>(), AXES);
     plot.regions =
-        Some(regions(whiskers.iter().all(|(_, whisker, _)| {
-            whisker.sharpest_bend_per_mm() == 0.0
-        })));
+        Some(regions(whiskers.iter().all(|(_, whisker, _)| whisker.sharpest_bend_per_mm() == 0.0)));
     let table = all().flat_map(|((whisker, ..), rows)| {
         rows.iter().map(|end| DetachmentRow {
             whisker,

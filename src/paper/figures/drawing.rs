@@ -41,10 +41,7 @@ pub fn sections(whisker: &Whisker, count: usize) -> Vec<OutlineSection> {
 
 /// Returns the closed outline of a whisker through its `sections`: `[point][x, y]` in mm. Radii are multiplied by [`MAGNIFIED`].
 pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
-    let places: Vec<DVec2> = sections
-        .iter()
-        .map(|at| DVec2::new(at.x_mm, at.y_mm))
-        .collect();
+    let places: Vec<DVec2> = sections.iter().map(|at| DVec2::new(at.x_mm, at.y_mm)).collect();
     let side = |i: usize, sign: f64| {
         let (before, after) = (i.saturating_sub(1), (i + 1).min(places.len() - 1));
         let normal = (places[after] - places[before]).normalize().perp();
@@ -60,9 +57,7 @@ pub fn outline(sections: &[OutlineSection]) -> Vec<[f64; 2]> {
 pub fn arc(radius: f64, [from, to]: [f64; 2]) -> Vec<[f64; 2]> {
     const STEPS: u32 = 24;
     let angle = |step: u32| (to - from).mul_add(f64::from(step) / f64::from(STEPS), from);
-    (0..=STEPS)
-        .map(|step| (radius * DVec2::from_angle(angle(step))).to_array())
-        .collect()
+    (0..=STEPS).map(|step| (radius * DVec2::from_angle(angle(step))).to_array()).collect()
 }
 
 /// Returns notes that draw an arrow with heads at both ends, and a text above its middle.

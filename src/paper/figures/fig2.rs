@@ -67,10 +67,7 @@ fn panel(
     for &(solution, push_angle_deg, stroke) in states {
         let found = branch.state(push_angle_deg.to_radians(), stroke == Stroke::Solid)?;
         let shape = branch.shape(&found, POINTS);
-        let state = ShapeState {
-            solution,
-            push_angle_deg,
-        };
+        let state = ShapeState { solution, push_angle_deg };
         rows.extend(shape.points.iter().map(|point| (state, *point)));
         drawn.push(DrawnShape {
             shape,
@@ -85,9 +82,6 @@ fn panel(
         place: [0.2, 0.72],
         ..Inset::default()
     };
-    let plot = Plot {
-        inset: Some(inset),
-        ..shapes(title, &drawn)
-    };
+    let plot = Plot { inset: Some(inset), ..shapes(title, &drawn) };
     Ok(FigurePanel::new(letter, plot, rows))
 }

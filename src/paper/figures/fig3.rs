@@ -33,31 +33,20 @@ impl Serialize for BranchRow {
     }
 }
 
-const PUSH_ANGLE: BranchAxis = BranchAxis {
-    label: "push angle \u{3b8}_{p} (deg)",
-    value: |point| point.push_angle_deg,
-};
+const PUSH_ANGLE: BranchAxis =
+    BranchAxis { label: "push angle \u{3b8}_{p} (deg)", value: |point| point.push_angle_deg };
 /// The contact angle in the axes of Eqs. 8-14, in which the pole stands still and the base turns against the push.
 const CONTACT_ANGLE: BranchAxis = BranchAxis {
     label: "contact angle \u{3b8}_{obj} (deg)",
     value: |point| point.contact_angle_deg - point.push_angle_deg,
 };
-const FORCE: BranchAxis = BranchAxis {
-    label: "force F (\u{b5}N)",
-    value: |point| point.force_un,
-};
-const CONTACT: BranchAxis = BranchAxis {
-    label: "contact position s_{obj} (mm)",
-    value: |point| point.arc_length_mm,
-};
+const FORCE: BranchAxis = BranchAxis { label: "force F (\u{b5}N)", value: |point| point.force_un };
+const CONTACT: BranchAxis =
+    BranchAxis { label: "contact position s_{obj} (mm)", value: |point| point.arc_length_mm };
 
 pub fn fig3() -> Result<Figure, NoState> {
     let far = |whisker: &Whisker| states(whisker, |side| pole_distance_mm(whisker, side));
-    let (cone, cylinder, near) = (
-        far(&CONE)?,
-        far(&CYLINDER)?,
-        states(&CYLINDER, |_| NEAR_MM)?,
-    );
+    let (cone, cylinder, near) = (far(&CONE)?, far(&CYLINDER)?, states(&CYLINDER, |_| NEAR_MM)?);
     let cone = column(
         ["A", "B", "C", "D", "E"],
         ("cone", &CONE),
@@ -72,10 +61,7 @@ pub fn fig3() -> Result<Figure, NoState> {
         &[(Ink::Black, &near), (Ink::Blue, &cylinder)],
         (["c", "d"], [8.0, -1.2]),
     )?;
-    let panels = cone
-        .into_iter()
-        .zip(cylinder)
-        .flat_map(|(left, right)| [left, right]);
+    let panels = cone.into_iter().zip(cylinder).flat_map(|(left, right)| [left, right]);
     let caption = vec![
         format!("{PUSH} Unstable states are drawn as far as \u{3b8}_{{p}} = 0."),
         "\u{3b8}_{obj}: from the x-axis of Eqs. 8-14 to the whisker at the contact; it grows toward +y, as in dy/ds = sin \u{3b8}."
@@ -110,39 +96,23 @@ fn column(
     (marked, shift): ([&str; 2], [f64; 2]),
 ) -> Result<Vec<FigurePanel>, NoState> {
     let [schematic, angle, force, contact, ends] = letters;
-    let points: Vec<BranchPoint> = poles
-        .iter()
-        .flat_map(|(_, points)| points.iter().copied())
-        .collect();
-    let drawn = poles.iter().map(|(ink, points)| DrawnBranch {
-        points,
-        ink: *ink,
-        name: "stable",
-    });
+    let points: Vec<BranchPoint> =
+        poles.iter().flat_map(|(_, points)| points.iter().copied()).collect();
+    let drawn = poles.iter().map(|(ink, points)| DrawnBranch { points, ink: *ink, name: "stable" });
     let drawn: Vec<_> = drawn.collect();
-    let plot = |y| Plot {
-        regions: Some(regions(false)),
-        ..branches(title, &drawn, [PUSH_ANGLE, y])
-    };
+    let plot =
+        |y| Plot { regions: Some(regions(false)), ..branches(title, &drawn, [PUSH_ANGLE, y]) };
     let mut contacts = plot(CONTACT);
     let (branch, end) = fig2::branch(whisker)?;
-    let at_10 = branch
-        .read(&branch.state(PUSH_DEG.to_radians(), true)?)
-        .arc_length_mm;
+    let at_10 = branch.read(&branch.state(PUSH_DEG.to_radians(), true)?).arc_length_mm;
     let states = [[PUSH_DEG, at_10], [end.push_angle_deg, end.arc_length_mm]];
-    contacts
-        .notes
-        .extend(states.iter().zip(marked).map(|(at, letter)| {
-            let from = [at[0] + shift[0], at[1] + shift[1]];
-            Note::arrow(from, *at, letter, Ink::Black)
-        }));
+    contacts.notes.extend(states.iter().zip(marked).map(|(at, letter)| {
+        let from = [at[0] + shift[0], at[1] + shift[1]];
+        Note::arrow(from, *at, letter, Ink::Black)
+    }));
     Ok(vec![
         drawing(schematic, name, whisker),
-        FigurePanel::new(
-            angle,
-            plot(CONTACT_ANGLE),
-            rows(&points, "theta_obj_deg", CONTACT_ANGLE),
-        ),
+        FigurePanel::new(angle, plot(CONTACT_ANGLE), rows(&points, "theta_obj_deg", CONTACT_ANGLE)),
         FigurePanel::new(force, plot(FORCE), rows(&points, "force_un", FORCE)),
         FigurePanel::new(contact, contacts, rows(&points, "s_obj_mm", CONTACT)),
         detachment::panel(ends, name, &[(name, whisker, Stroke::Solid)]),

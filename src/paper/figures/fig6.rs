@@ -67,10 +67,7 @@ impl<'a> Sweep<'a> {
         let reach_mm = reach_mm(whisker, &Pole::smooth(0.0), Side::Cb);
         // In free air the surface is beyond the whisker.
         let distance_mm = reach_mm - push_mm.unwrap_or(-1.0);
-        let surface = Surface {
-            distance_mm,
-            ..SURFACE
-        };
+        let surface = Surface { distance_mm, ..SURFACE };
         let (of_file, title) = match push_mm {
             None => ("free".to_owned(), "free air".to_owned()),
             Some(mm) => (format!("{:.0}um", 1e3 * mm), format!("d_{{p}} = {mm} mm")),
@@ -125,11 +122,7 @@ impl<'a> Sweep<'a> {
     fn course(&self, letter: &'static str) -> FigurePanel {
         let lines = tip_lines(&self.texture.samples, |sample| sample.time_s);
         let swap = |line: Line| Line {
-            points: line
-                .points
-                .iter()
-                .map(|[time, tip]| [*tip, *time])
-                .collect(),
+            points: line.points.iter().map(|[time, tip]| [*tip, *time]).collect(),
             ..line
         };
         let plot = Plot {
@@ -143,10 +136,7 @@ impl<'a> Sweep<'a> {
     }
 
     fn histogram(&self) -> FigurePanel {
-        let plot = Plot {
-            title: self.title.clone(),
-            ..tip_histogram(&self.fine)
-        };
+        let plot = Plot { title: self.title.clone(), ..tip_histogram(&self.fine) };
         FigurePanel::new("", plot, self.fine.tip_histogram())
     }
 }
@@ -178,11 +168,7 @@ pub fn fig6() -> Result<Figure, FigureError> {
             panels.push((name, sweep.histogram()));
         }
     }
-    let Surface {
-        spacing_um,
-        asperity_radius_um,
-        ..
-    } = SURFACE;
+    let Surface { spacing_um, asperity_radius_um, .. } = SURFACE;
     let caption = vec![
         "The paper has no model for this. Here the surface is a row of small poles; one at a time bends the whisker, without friction and"
             .to_owned(),

@@ -64,9 +64,8 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
     frame.curvature_per_mm = at.curvature_per_mm + noise;
     frame.at_mm = Some(turn.rotate(DVec2::new(at.x_mm, at.y_mm)).to_array());
     let mut points = shape.points.iter();
-    frame.contact = points
-        .find(|point| point.part == WhiskerPart::Contact)
-        .map(|point| FrameContact {
+    frame.contact =
+        points.find(|point| point.part == WhiskerPart::Contact).map(|point| FrameContact {
             is_known: true,
             contact_mm: turn.rotate(DVec2::new(point.x_mm, point.y_mm)).to_array(),
             contact_angle_deg: Some(point.angle_deg + push),
@@ -78,11 +77,7 @@ fn frame(motion: &Motion, i: usize, sample: &WhiskSample) -> Result<CurvatureFra
 pub fn fig7b() -> Result<Figure, FigureError> {
     let times: Vec<f64> = (0..FRAMES).map(|i| 1e-3 * f64::from(i)).collect();
     let angles = times.iter().map(|time| angle_deg(*time)).collect();
-    let motion = Motion::new(
-        &FIG4_WHISKER,
-        DISTANCE_MM,
-        &AngleCourse::new(times, angles)?,
-    )?;
+    let motion = Motion::new(&FIG4_WHISKER, DISTANCE_MM, &AngleCourse::new(times, angles)?)?;
     let samples = &motion.whisk.samples;
     let frames: Vec<CurvatureFrame> = samples
         .iter()
@@ -103,9 +98,7 @@ pub fn fig7b() -> Result<Figure, FigureError> {
         })
         .collect();
     let line = |value: &dyn Fn(&TrialFrame) -> Option<f64>, ink| {
-        let points = rows
-            .iter()
-            .map(|row| [row.time_s, value(row).unwrap_or(f64::NAN)]);
+        let points = rows.iter().map(|row| [row.time_s, value(row).unwrap_or(f64::NAN)]);
         Line::new(points.collect(), ink, Stroke::Solid)
     };
     let angle = Plot {
@@ -140,10 +133,7 @@ pub fn fig7b() -> Result<Figure, FigureError> {
     ];
     let title = "Fig. 7B: contact forces from the change of curvature";
     let panels = vec![
-        (
-            "fig7b_angle".to_owned(),
-            FigurePanel::new("", angle, rows.clone()),
-        ),
+        ("fig7b_angle".to_owned(), FigurePanel::new("", angle, rows.clone())),
         ("fig7b".to_owned(), FigurePanel::new("B", force, rows)),
     ];
     let mut drawn = figure("fig7b", title, caption, panels);

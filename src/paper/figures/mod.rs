@@ -62,11 +62,7 @@ struct FigurePanel {
 
 impl FigurePanel {
     fn new<R: Serialize + 'static>(letter: &'static str, plot: Plot, rows: Vec<R>) -> Self {
-        Self {
-            letter,
-            plot,
-            rows: Box::new(move |table| table.rows(&rows)),
-        }
+        Self { letter, plot, rows: Box::new(move |table| table.rows(&rows)) }
     }
 }
 
@@ -97,24 +93,12 @@ fn figure(
 ) -> Figure {
     let panels = panels.into_iter().map(|(table, panel)| {
         let letter = Some(panel.letter.to_owned());
-        let plot = Plot {
-            letter,
-            ..panel.plot
-        };
+        let plot = Plot { letter, ..panel.plot };
         (plot, (table, panel.rows))
     });
     let (plots, tables) = panels.unzip();
-    let chart = Chart {
-        title: title.to_owned(),
-        caption,
-        plots,
-        columns: 2,
-    };
-    Figure {
-        name,
-        chart,
-        tables,
-    }
+    let chart = Chart { title: title.to_owned(), caption, plots, columns: 2 };
+    Figure { name, chart, tables }
 }
 
 /// A figure whose tables are named by the figure and the letter of the panel.

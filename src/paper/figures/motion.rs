@@ -89,11 +89,7 @@ impl Motion {
             x_label: "x (mm)".to_owned(),
             y_label: "y (mm)".to_owned(),
             lines,
-            discs: vec![Disc {
-                centre: self.shapes.pole_mm,
-                radius: POLE.radius_mm,
-                dark: true,
-            }],
+            discs: vec![Disc { centre: self.shapes.pole_mm, radius: POLE.radius_mm, dark: true }],
             equal_axes: true,
             ..Plot::default()
         };
@@ -109,14 +105,8 @@ pub fn fig4b() -> Result<Figure, FigureError> {
     let cone = Motion::new(&FIG4_WHISKER, WHISKER_MM, &course)?;
     let hair = Motion::new(&FIG4_HAIR, HAIR_MM, &course)?;
     let panels = vec![
-        (
-            "fig4b".to_owned(),
-            cone.panel("B", "mouse whisker: slips off", 4)?,
-        ),
-        (
-            "fig4c".to_owned(),
-            hair.panel("C", "human hair: is pulled off", 4)?,
-        ),
+        ("fig4b".to_owned(), cone.panel("B", "mouse whisker: slips off", 4)?),
+        ("fig4c".to_owned(), hair.panel("C", "human hair: is pulled off", 4)?),
     ];
     let caption = vec![
         "The base turns by 30 deg at 0.2 Hz as in the paper; every fourth frame of 32 per second. The pole stands still.".to_owned(),
@@ -132,10 +122,8 @@ pub fn fig5b() -> Result<Figure, FigureError> {
     const DISTANCE_MM: f64 = 12.0;
     let course = protraction([12.0, 18.0], 8.0, 250.0)?;
     let motion = Motion::new(&FIG5_RIGHT, DISTANCE_MM, &course)?;
-    let panels = vec![(
-        "fig5b".to_owned(),
-        motion.panel("B", "protraction, 250 frames per second", 1)?,
-    )];
+    let panels =
+        vec![("fig5b".to_owned(), motion.panel("B", "protraction, 250 frames per second", 1)?)];
     let caption = vec![
         "A made-up protraction: the paper gives neither the course nor the distance of its example. The whisker is that of Fig. 5C, right;"
             .to_owned(),

@@ -109,10 +109,8 @@ impl Pairs {
             PairSource::Listed(pairs) => return Ok(pairs.into_iter().map(|pair| pair.0).collect()),
         };
         let (file, path) = named_file(self.kind.key, self.kind.name, &name, folder)?;
-        let (pairs, csv) = self
-            .kind
-            .read_csv(file, path)
-            .map_err(|why| refused(why.to_string()))?;
+        let (pairs, csv) =
+            self.kind.read_csv(file, path).map_err(|why| refused(why.to_string()))?;
         files.push(csv);
         Ok(pairs)
     }
@@ -176,16 +174,9 @@ impl PairKind {
         let [first, second] = self.columns;
         let note = table.require(&[&[first], &[second]], &[])?;
         let column = |name| table.numbers(name, "a number", f64::is_finite);
-        let pairs = column(first)?
-            .unwrap_or_default()
-            .into_iter()
-            .zip(column(second)?.unwrap_or_default());
-        let csv = PairsCsv {
-            key: self.key,
-            path,
-            lines: table.lines().collect(),
-            note,
-        };
+        let pairs =
+            column(first)?.unwrap_or_default().into_iter().zip(column(second)?.unwrap_or_default());
+        let csv = PairsCsv { key: self.key, path, lines: table.lines().collect(), note };
         Ok((pairs.take(self.most).map(Into::into).collect(), csv))
     }
 }

@@ -129,12 +129,8 @@ fn build(
         name: file.output.name,
         ..SceneBuilder::default()
     };
-    let mut bends = [
-        Parameter::ParabolaPerMm,
-        Parameter::VertexMm,
-        Parameter::SpiralPerMm,
-    ]
-    .into_iter();
+    let mut bends =
+        [Parameter::ParabolaPerMm, Parameter::VertexMm, Parameter::SpiralPerMm].into_iter();
     let is_bent = bends.any(|bend| numbers.get(bend).is_some() || builder.sweeps(bend));
     if !is_bent && place_in(text, "whisker.curvature").is_some() {
         let must = "must have either parabola_per_mm, and vertex_mm if need be, or euler_spiral";
@@ -142,9 +138,7 @@ fn build(
     }
     if let Some(rows) = file.whisker.profile.rows {
         let rows = rows.read(folder, files)?;
-        builder = builder
-            .profile(rows)
-            .smooth_profile(file.whisker.profile.smooth);
+        builder = builder.profile(rows).smooth_profile(file.whisker.profile.smooth);
     }
     let rest = file.whisker.rest;
     if let Some(points) = rest.points {
@@ -253,10 +247,7 @@ fn located(mut fault: SceneFault, files: &[PairsCsv], origin: &str, text: &str) 
         && fault.must.starts_with(NOT_GROWING)
         && !fault.must.contains('.')
         && value.parse::<u64>().is_ok()
-        && has_tight_comma(
-            text.get(span.start.saturating_sub(2)..span.end)
-                .unwrap_or_default(),
-        )
+        && has_tight_comma(text.get(span.start.saturating_sub(2)..span.end).unwrap_or_default())
     {
         // `10,5` was meant as one number.
         fault.must.push_str(DECIMAL_POINTS);

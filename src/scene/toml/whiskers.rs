@@ -87,8 +87,7 @@ impl WhiskerRows {
         match self {
             Self::Listed(list) => {
                 let list = list.into_iter().enumerate();
-                list.map(|(index, row)| row.read(index, folder, files))
-                    .collect()
+                list.map(|(index, row)| row.read(index, folder, files)).collect()
             }
             Self::Named(name) => {
                 let (file, path) = named_file(KEY, "rows", &name, folder)?;
@@ -120,11 +119,7 @@ impl RowTable {
                 let hint = did_you_mean(&name, WhiskerRow::columns());
                 let known = WhiskerRow::columns().collect::<Vec<_>>().join(", ");
                 let must = format!("is not known; must be one of {known}{hint}");
-                return Err(of_row(SceneFault::of_value(
-                    shortened(&name),
-                    digits(value),
-                    must,
-                )));
+                return Err(of_row(SceneFault::of_value(shortened(&name), digits(value), must)));
             };
             row = row.set(parameter, value);
         }
@@ -146,11 +141,7 @@ fn read_pairs(
 ) -> Result<Vec<[f64; 2]>, SceneFault> {
     let mut named = Vec::new();
     let pairs = pairs.read(folder, &mut named)?;
-    files.extend(named.into_iter().map(|csv| PairsCsv {
-        key: KEY,
-        lines: Vec::new(),
-        ..csv
-    }));
+    files.extend(named.into_iter().map(|csv| PairsCsv { key: KEY, lines: Vec::new(), ..csv }));
     Ok(pairs)
 }
 
@@ -241,12 +232,7 @@ fn read_csv(
         *row = std::mem::take(row).yield_strain(strain);
     }
     let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-    files.push(PairsCsv {
-        key: KEY,
-        path,
-        lines: table.lines().collect(),
-        note,
-    });
+    files.push(PairsCsv { key: KEY, path, lines: table.lines().collect(), note });
     let kinds: [(_, _, SetPairs); 2] = [
         (PROFILE, PairKind::ROWS, WhiskerRow::profile),
         (REST_POINTS, PairKind::POINTS, WhiskerRow::rest_points),
@@ -257,10 +243,7 @@ fn read_csv(
                 continue;
             }
             let pairs = read_pairs(kind.named(name), Some(&folder), files).map_err(|fault| {
-                SceneFault::new(
-                    format!("{KEY}[{index}]"),
-                    format!("{column}: {}", fault.must),
-                )
+                SceneFault::new(format!("{KEY}[{index}]"), format!("{column}: {}", fault.must))
             })?;
             *row = set(std::mem::take(row), pairs);
         }

@@ -100,11 +100,7 @@ impl Scene {
         if is_tapered {
             let taper = changed.whisker.taper();
             if taper != self.whisker.taper() {
-                put(
-                    document.as_table_mut(),
-                    TAPER_KEY,
-                    rounded(taper, DERIVED_DIGITS),
-                );
+                put(document.as_table_mut(), TAPER_KEY, rounded(taper, DERIVED_DIGITS));
             }
         }
         Ok(document.to_string())
@@ -146,11 +142,7 @@ fn document(scene: &SceneBuilder) -> DocumentMut {
     }
     if let Some(deviations) = &scene.uncertainty {
         for (parameter, deviation) in &deviations.parameters {
-            put(
-                root,
-                &format!("uncertainty.{}", parameter.name()),
-                *deviation,
-            );
+            put(root, &format!("uncertainty.{}", parameter.name()), *deviation);
         }
         if let Some(deviation) = deviations.profile_radius_um {
             put(root, &format!("uncertainty.{ROWS}"), deviation);
@@ -190,10 +182,8 @@ impl SceneBuilder {
                 standalone.replace_range(span, &pairs_text(pairs));
             }
         }
-        let of_whiskers = self
-            .table
-            .as_ref()
-            .filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
+        let of_whiskers =
+            self.table.as_ref().filter(|_| files.iter().any(|csv| csv.key == SweepVariable::TABLE));
         if self.traced.is_none() && of_whiskers.is_none() {
             return standalone;
         }
@@ -241,12 +231,7 @@ impl From<&AxisValues> for Value {
     fn from(values: &AxisValues) -> Self {
         match values {
             AxisValues::List(list) => Array::from_iter(list.iter().copied()).into(),
-            AxisValues::Range {
-                from,
-                to,
-                count,
-                scale,
-            } => {
+            AxisValues::Range { from, to, count, scale } => {
                 let mut table = InlineTable::new();
                 table.insert("from", (*from).into());
                 if let Some(to) = *to {

@@ -26,11 +26,7 @@ pub struct Corrector<'a> {
 impl<'a> Corrector<'a> {
     /// Creates a corrector that stops when a point misses the curve by at most `tolerance` in `ln D`, or by rounding.
     pub const fn new(level: &'a LevelCurve, tolerance: f64) -> Self {
-        Self {
-            level,
-            tolerance,
-            missed: f64::INFINITY,
-        }
+        Self { level, tolerance, missed: f64::INFINITY }
     }
 }
 
@@ -70,10 +66,8 @@ pub fn correct(points: &[(&LevelCurve, DVec2, f64)]) -> Vec<Option<(DVec2, FullS
     let Some((first, ..)) = points.first() else {
         return Vec::new();
     };
-    let mut correctors: Vec<Corrector> = points
-        .iter()
-        .map(|(level, _, tolerance)| Corrector::new(level, *tolerance))
-        .collect();
+    let mut correctors: Vec<Corrector> =
+        points.iter().map(|(level, _, tolerance)| Corrector::new(level, *tolerance)).collect();
     let newton = BatchNewton::new(first.method, CORRECTOR_TRAJECTORIES);
     let iterates = newton.solve(&mut correctors, points.iter().map(|(_, point, _)| *point));
     let corrected = iterates.into_iter().map(|iterate| {

@@ -65,31 +65,19 @@ impl LevelCurve {
     /// Creates the level curve of `row`, followed in the direction of growing push angles.
     #[must_use]
     pub fn new(method: Method, rod: &Rod, side: Side, row: &Row) -> Self {
-        Self {
-            method,
-            rod: rod.clone(),
-            side,
-            row: *row,
-            forward: true,
-        }
+        Self { method, rod: rod.clone(), side, row: *row, forward: true }
     }
 
     /// Returns this level curve with twice the integration steps.
     #[must_use]
     pub(super) fn finer(&self) -> Self {
-        Self {
-            method: self.method.doubled(),
-            ..self.clone()
-        }
+        Self { method: self.method.doubled(), ..self.clone() }
     }
 
     /// Returns this level curve, followed in the opposite direction.
     #[must_use]
     pub fn backward(&self) -> Self {
-        Self {
-            forward: !self.forward,
-            ..self.clone()
-        }
+        Self { forward: !self.forward, ..self.clone() }
     }
 
     /// Returns the node of a level curve with the state `full` at `point`, `(tau, load)`. Its angles are continued from `signed_push` and

@@ -122,11 +122,7 @@ impl Chord<'_> {
         };
         let [from, to] = [slope(&self.from), slope(&self.to)];
         let bulge = 6.0 * rise - 3.0 * (from + to);
-        let change_off = if self.spans_kink() {
-            KINK_OFF
-        } else {
-            CHANGE_OFF
-        };
+        let change_off = if self.spans_kink() { KINK_OFF } else { CHANGE_OFF };
         let off = BULGE_OFF * bulge.abs() + change_off * (to - from).abs();
         let least = from.max(0.0).sqrt() + to.max(0.0).sqrt();
         let ends_growing = to >= -FLAT_END * rise.abs();
@@ -144,17 +140,12 @@ impl Chord<'_> {
     /// Returns the tip and the fold, each if the chord has crossed it.
     fn crossed(&self) -> [Option<(&Self, Edge)>; 2] {
         let is_beyond = self.to.point.x > self.level.rod.tau_tip();
-        [
-            is_beyond.then_some((self, Edge::Tip)),
-            self.turns_over().then_some((self, Edge::Fold)),
-        ]
+        [is_beyond.then_some((self, Edge::Tip)), self.turns_over().then_some((self, Edge::Fold))]
     }
 
     /// Returns the Newton problem for the point of `edge` on the chord.
     fn problem(&self, edge: Edge) -> EdgeProblem<'_> {
-        let Self {
-            level, from, to, ..
-        } = self;
+        let Self { level, from, to, .. } = self;
         let tip = level.rod.tau_tip();
         let height = |node: &CurveNode| match edge {
             Edge::Fold => node.full.map.det(),
@@ -191,11 +182,7 @@ impl Chord<'_> {
     /// Returns the angle between the directions of the curve at both nodes, in radians; 0 for a chord that begins at first touch.
     pub fn turn(&self) -> f64 {
         let [from, to] = [&self.from, &self.to].map(|node| self.level.direction(node));
-        if self.from.is_first_touch() {
-            0.0
-        } else {
-            from.angle_to(to).abs()
-        }
+        if self.from.is_first_touch() { 0.0 } else { from.angle_to(to).abs() }
     }
 }
 
@@ -235,10 +222,8 @@ fn edges(chords: &[(&Chord, Edge)]) -> Vec<Option<CurveNode>> {
     let Some((first, _)) = chords.first() else {
         return Vec::new();
     };
-    let problems: Vec<EdgeProblem> = chords
-        .iter()
-        .map(|(chord, edge)| chord.problem(*edge))
-        .collect();
+    let problems: Vec<EdgeProblem> =
+        chords.iter().map(|(chord, edge)| chord.problem(*edge)).collect();
     let iterates = edge_newton(first.level.method, LaneSharing::EqualSteps, &problems);
     // At a fold, rounding can leave Newton's method slightly off the curve; at the tip its result is on the curve.
     let points = chords.iter().zip(&iterates);

@@ -58,10 +58,8 @@ fn within_turns(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Optio
     let again = follow_with_retry(&finer_starts, stretch, miss);
     for ((ended, again), start) in ended.iter_mut().zip(again).zip(starts) {
         // States between nodes take the steps of all other states.
-        let again = again.zip(*start).map(|(path, (level, _))| Path {
-            level: level.clone(),
-            ..path
-        });
+        let again =
+            again.zip(*start).map(|(path, (level, _))| Path { level: level.clone(), ..path });
         *ended = again.or(ended.take());
     }
     ended
@@ -75,9 +73,7 @@ fn follow_with_retry(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<
         let pairs = starts.iter().zip(&ended);
         let may_be_open = stretch == Stretch::Unstable;
         let has_end = |found: &Option<Path>| {
-            found
-                .as_ref()
-                .is_some_and(|path| path.end.is_some() || may_be_open)
+            found.as_ref().is_some_and(|path| path.end.is_some() || may_be_open)
         };
         let failed = pairs.map(|(start, found)| start.filter(|_| !has_end(found)));
         let again = follow(&failed.collect::<Vec<_>>(), stretch, ON_CURVE);
@@ -145,10 +141,7 @@ fn follow(starts: &[CurveStart], stretch: Stretch, miss: f64) -> Vec<Option<Path
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::unwrap_used,
-    reason = "a branch that is not there fails the test"
-)]
+#[allow(clippy::unwrap_used, reason = "a branch that is not there fails the test")]
 mod tests {
     use super::*;
     use crate::sheet::row::Row;
@@ -159,17 +152,10 @@ mod tests {
     /// In a soft follicle, a coil of several turns unwinds toward the other side: unstable states are left after one turn there.
     #[test]
     fn unstable_states_are_followed_back_for_one_turn() {
-        let rod = Rod {
-            taper: 0.5,
-            pole: 0.0188,
-            mount: 1.74,
-            ..Rod::default()
-        };
+        let rod = Rod { taper: 0.5, pole: 0.0188, mount: 1.74, ..Rod::default() };
         let row = Row::new(&Rest::new(&rod), 0.193);
         let level = LevelCurve::new(Method::fine(), &rod, Side::Cb, &row);
-        let branch = level
-            .continuation(level.touch(), Stretch::PastFold)
-            .unwrap();
+        let branch = level.continuation(level.touch(), Stretch::PastFold).unwrap();
         let fold = branch.nodes[branch.fold.unwrap()];
         let last = |nodes: &[CurveNode]| nodes[nodes.len() - 1].signed_push / TAU;
         assert!(
@@ -185,17 +171,10 @@ mod tests {
     #[test]
     fn a_state_at_a_push_takes_few_iterations() {
         for side in Side::BOTH {
-            let rod = Rod {
-                taper: 0.95,
-                bend: 0.4,
-                pole: 0.0125 * side.sign(),
-                ..Rod::default()
-            };
+            let rod = Rod { taper: 0.95, bend: 0.4, pole: 0.0125 * side.sign(), ..Rod::default() };
             let row = Row::new(&Rest::new(&rod), 0.75);
             let level = LevelCurve::new(Method::fine(), &rod, side, &row);
-            let branch = level
-                .continuation(level.touch(), Stretch::PastFold)
-                .unwrap();
+            let branch = level.continuation(level.touch(), Stretch::PastFold).unwrap();
             let fold = branch.fold.unwrap();
             for part in [&branch.nodes[..=fold], &branch.nodes[fold..]] {
                 let [from, to] = [part[0].signed_push, part[part.len() - 1].signed_push];

@@ -90,8 +90,6 @@ impl Path {
         let last = self.end.zip(self.nodes.last());
         let fold = self.fold.map(|fold| (Edge::Fold, &self.nodes[fold]));
         let slopes = fold.into_iter().chain(last);
-        slopes
-            .into_iter()
-            .any(|(edge, node)| edge.slope(&node.full.map).abs() > STEEP)
+        slopes.into_iter().any(|(edge, node)| edge.slope(&node.full.map).abs() > STEEP)
     }
 }

@@ -108,11 +108,7 @@ fn from_touch(rows: &[ContinuedRow]) -> Vec<StablePieces> {
     let pieces = rows.iter().zip(ends).map(|(row, end)| {
         let at_touch = at_touch(row).filter(|_| row.touches);
         let end = at_touch.map(|end| (end, Vec::new())).or(end);
-        let piece = end.map(|(end, nodes)| StablePiece {
-            begin: None,
-            end,
-            nodes,
-        });
+        let piece = end.map(|(end, nodes)| StablePiece { begin: None, end, nodes });
         StablePieces {
             are_complete: piece.is_some() || !row.touches,
             pieces: piece.into_iter().collect(),
@@ -152,16 +148,10 @@ fn through_crossings(
     // the same crossing.
     let leads =
         |entry: &Crossing, end: Option<PieceEnd>| end.filter(|(end, _)| !end.is_same(entry));
-    let ahead: Vec<Option<PieceEnd>> = entries
-        .iter()
-        .zip(ahead)
-        .map(|(entry, end)| leads(entry.as_ref()?, end))
-        .collect();
-    let back: Vec<Option<CurveNode>> = starts
-        .iter()
-        .zip(&ahead)
-        .map(|(start, ahead)| start.filter(|_| ahead.is_none()))
-        .collect();
+    let ahead: Vec<Option<PieceEnd>> =
+        entries.iter().zip(ahead).map(|(entry, end)| leads(entry.as_ref()?, end)).collect();
+    let back: Vec<Option<CurveNode>> =
+        starts.iter().zip(&ahead).map(|(start, ahead)| start.filter(|_| ahead.is_none())).collect();
     let behind = ends_of_pieces(rows, &back, Stretch::Stable, true);
     for (i, found) in found.iter_mut().enumerate() {
         let Some(entry) = entries[i] else { continue };
@@ -175,11 +165,7 @@ fn through_crossings(
                 continue;
             }
         };
-        found.pieces.push(StablePiece {
-            begin: Some(begin),
-            end,
-            nodes: nodes.clone(),
-        });
+        found.pieces.push(StablePiece { begin: Some(begin), end, nodes: nodes.clone() });
     }
 }
 
@@ -219,11 +205,7 @@ fn past_folds(rows: &[ContinuedRow], found: &mut [StablePieces]) {
 /// Returns true if one of the `nodes` of a piece with positive `det` is below the first fold of its contact. Then the whole piece is on the
 /// stable sheet.
 fn is_on_sheet(level: &LevelCurve, nodes: &[CurveNode]) -> bool {
-    let case = SheetCase {
-        method: level.method,
-        rod: &level.rod,
-        side: level.side,
-    };
+    let case = SheetCase { method: level.method, rod: &level.rod, side: level.side };
     let contacts: Vec<f64> = nodes.iter().map(|node| node.point.x).collect();
     let is_below = |(node, fold): (&CurveNode, Option<FoldPoint>)| {
         let is_stable = node.full.map.det() > 0.0;
@@ -256,8 +238,5 @@ fn ends_of_pieces(
     let starts = levels.iter().zip(starts);
     let starts = starts.map(|(level, start)| Some((level, (*start)?)));
     let continued = continuations(&starts.collect::<Vec<_>>(), stretch, NODE_MISS);
-    continued
-        .into_iter()
-        .map(|path| Some((path.as_ref()?.crossing()?, path?.nodes)))
-        .collect()
+    continued.into_iter().map(|path| Some((path.as_ref()?.crossing()?, path?.nodes))).collect()
 }

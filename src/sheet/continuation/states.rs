@@ -20,10 +20,7 @@ impl LevelCurve {
         let at_touch = self.row.first_touch(&self.rod);
         let FirstVariation { full, .. } =
             Batch::new(self.method).shoot_at(&self.rod, [at_touch])[0];
-        CurveNode {
-            signed_push: 0.0,
-            ..self.node(at_touch, &full, 0.0, 0.0)
-        }
+        CurveNode { signed_push: 0.0, ..self.node(at_touch, &full, 0.0, 0.0) }
     }
 
     /// Returns the level curve's state at a crossing, or `None` if the corrector fails.

@@ -125,10 +125,7 @@ impl<'a> Stepper<'a> {
     /// Returns true if the last node lies beyond the push angles that are followed.
     pub fn is_beyond_turns(&self) -> bool {
         let [least, most] = self.pushes;
-        let push = self
-            .nodes
-            .last()
-            .map(|last| self.level.side.sign() * last.signed_push);
+        let push = self.nodes.last().map(|last| self.level.side.sign() * last.signed_push);
         push.is_some_and(|push| push < least || push > most)
     }
 
@@ -184,12 +181,7 @@ impl<'a> Stepper<'a> {
 
     /// Returns the [`Chord`] from the last node of the continuation to `next`: its level curve, both nodes, and whether they are stable.
     pub fn chord(&self, next: CurveNode) -> Chord<'a> {
-        Chord {
-            level: self.level,
-            from: *self.last(),
-            to: next,
-            is_stable: self.fold.is_none(),
-        }
+        Chord { level: self.level, from: *self.last(), to: next, is_stable: self.fold.is_none() }
     }
 
     /// Returns true if the chord to `next` is about as long as the curve.
@@ -197,9 +189,8 @@ impl<'a> Stepper<'a> {
         let (level, last) = (self.level, self.last());
         let chord = level.place(next) - level.place(last);
         let before = self.nodes.iter().rev().nth(1);
-        let turn = before.map_or(0.0, |before| {
-            chord.angle_between(level.place(last) - level.place(before))
-        });
+        let turn = before
+            .map_or(0.0, |before| chord.angle_between(level.place(last) - level.place(before)));
         chord.length() < 2.0 * NODE_DISTANCE
             && (turn < SHARPEST_TURN || chord.length() < SHORT_CHORD)
     }

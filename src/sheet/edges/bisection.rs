@@ -75,12 +75,8 @@ impl EdgeBisection {
         };
         let miss = libm::log(here.map.pole.length()) - self.target;
         if self.left == 0 {
-            self.found = Some(EdgeIterate {
-                point,
-                here,
-                residual: miss.abs(),
-                has_converged: true,
-            });
+            self.found =
+                Some(EdgeIterate { point, here, residual: miss.abs(), has_converged: true });
             return false;
         }
         self.parts.shrink(self.part, miss);

@@ -54,10 +54,8 @@ fn predict(edges: &Edges, edge: Edge, pair: [&EdgeSample; 2], target: f64) -> Pr
 
 /// Returns the crossings of each row, `[row][crossing]`, sorted by push angle.
 pub fn crossings(case: SheetCase, edges: &Edges, rows: &[Row]) -> Vec<Vec<Crossing>> {
-    let targets: Vec<f64> = rows
-        .iter()
-        .map(|row| libm::log(row.pole_distance) - REACH_SLACK)
-        .collect();
+    let targets: Vec<f64> =
+        rows.iter().map(|row| libm::log(row.pole_distance) - REACH_SLACK).collect();
     let mut candidates = Vec::new();
     let mut found = vec![Vec::new(); rows.len()];
     for (edge, samples) in [(Edge::Fold, &edges.fold), (Edge::Tip, &edges.tip)] {
@@ -124,9 +122,7 @@ fn correct(case: SheetCase, rows: &[Row], candidates: &[CrossingCandidate]) -> V
         |i: &usize| !(corrected[*i].is_sound() && candidates[*i].holds(iterates[*i].point));
     let failed: Vec<usize> = (0..candidates.len()).filter(has_failed).collect();
     let between = failed.iter().map(|&i| {
-        let CrossingCandidate {
-            problem, between, ..
-        } = candidates[i];
+        let CrossingCandidate { problem, between, .. } = candidates[i];
         EdgeBisection::new(problem.edge, between, libm::log(problem.pole_distance))
     });
     let bisected = bisect(case, between.collect());

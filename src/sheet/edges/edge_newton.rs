@@ -123,10 +123,7 @@ pub fn edge_newton(
     sharing: LaneSharing,
     problems: &[EdgeProblem],
 ) -> Vec<EdgeIterate> {
-    let newton = BatchNewton {
-        sharing,
-        ..BatchNewton::new(method, EDGE_TRAJECTORIES)
-    };
+    let newton = BatchNewton { sharing, ..BatchNewton::new(method, EDGE_TRAJECTORIES) };
     let search = |problem| EdgeSearch { problem, left: 0.0 };
     let mut searches: Vec<EdgeSearch> = problems.iter().map(search).collect();
     let iterates = newton.solve(&mut searches, problems.iter().map(|problem| problem.start));
@@ -145,23 +142,14 @@ pub fn edge_newton_predicted(method: Method, problems: &[EdgeProblem]) -> Vec<Ed
     let Some(first) = problems.first() else {
         return Vec::new();
     };
-    debug_assert!(
-        problems
-            .iter()
-            .all(|problem| std::ptr::eq(problem.rod, first.rod))
-    );
+    debug_assert!(problems.iter().all(|problem| std::ptr::eq(problem.rod, first.rod)));
     let starts = problems.iter().map(|problem| problem.start);
     let maps: Vec<ShootingMap> = Batch::new(method).padded().shoot_at(first.rod, starts);
     let mut open = Vec::new();
     let predicted = problems.iter().zip(maps).enumerate();
     let predicted = predicted.map(|(i, (problem, map))| {
         let [by_tau_tau, by_tau_load, by_load_load] = problem.second.unwrap_or_default();
-        let here = SecondVariation {
-            map,
-            by_tau_tau,
-            by_tau_load,
-            by_load_load,
-        };
+        let here = SecondVariation { map, by_tau_tau, by_tau_load, by_load_load };
         let (step, length) = problem.step(problem.start, &here);
         let there = problem.start + step;
         // A length of NaN is not short.
@@ -191,24 +179,14 @@ mod tests {
     /// Starts are off by 1e-8 and 1e-5; second derivatives are known, wrong or missing.
     #[test]
     fn predictions_lead_to_the_same_point() {
-        let rod = Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125,
-            ..Rod::default()
-        };
+        let rod = Rod { taper: 0.95, bend: 0.4, pole: 0.0125, ..Rod::default() };
         let method = Method::fine();
         let fold = DVec2::new(rod.tau(0.8), 12.0);
         let tip = DVec2::new(rod.tau_tip(), 3.0);
         let is_found = |iterate: &EdgeIterate| iterate.has_converged && iterate.residual < 1e-12;
         for (edge, start, along) in [(Edge::Fold, fold, DVec2::ONE), (Edge::Tip, tip, DVec2::Y)] {
-            let mut problem = EdgeProblem {
-                rod: &rod,
-                edge,
-                pole_distance: 0.75,
-                start,
-                second: None,
-            };
+            let mut problem =
+                EdgeProblem { rod: &rod, edge, pole_distance: 0.75, start, second: None };
             if edge == Edge::Tip {
                 let here: Vec<ShootingMap> = Batch::new(method).shoot_at(&rod, [start]);
                 problem.pole_distance = here[0].pole.length();
@@ -220,11 +198,7 @@ mod tests {
             for off in [1e-8, 1e-5] {
                 let start = known.point * (DVec2::ONE + off * along);
                 for second in [Some(seconds), Some(seconds.map(|by| 1.1 * by)), None] {
-                    let predicted = EdgeProblem {
-                        start,
-                        second,
-                        ..problem
-                    };
+                    let predicted = EdgeProblem { start, second, ..problem };
                     let found = edge_newton_predicted(method, &[predicted])[0];
                     let away = (found.point / known.point - DVec2::ONE).abs();
                     assert!(is_found(&found), "{edge:?} {off}");

@@ -36,9 +36,7 @@ const SLOPE_TOLERANCE: f64 = 0.25;
 
 /// Returns true if the `change` of a function between two samples agrees with its `slopes` there.
 fn is_as_steep_as(change: f64, slopes: [f64; 2]) -> bool {
-    slopes
-        .iter()
-        .all(|slope| (change - slope).abs() < SLOPE_TOLERANCE)
+    slopes.iter().all(|slope| (change - slope).abs() < SLOPE_TOLERANCE)
 }
 
 impl Edges {
@@ -57,18 +55,12 @@ impl Edges {
             })
             .collect();
         let corner = &contacts.folds[contacts.tip];
-        let SampledTipEdge {
-            samples: mut tip,
-            edge: tip_edge,
-            at_touch,
-        } = SampledTipEdge::new(case, corner);
+        let SampledTipEdge { samples: mut tip, edge: tip_edge, at_touch } =
+            SampledTipEdge::new(case, corner);
         let rest = Rest::new(rod);
         let (tip_at_rest, _) = rest.at_arclength(arclength(rod, rod.tau_tip()));
         let pole = rest.pole_at_distance(tip_at_rest.length()).length();
-        tip.extend(fold.last().map(|corner| EdgeSample {
-            place: 1.0,
-            ..*corner
-        }));
+        tip.extend(fold.last().map(|corner| EdgeSample { place: 1.0, ..*corner }));
         let is_certified = |(i, pair): (usize, &[EdgeSample])| {
             let slopes = [i, i + 1].map(|i| contacts.slope(i));
             let [from, to] = [pair[0], pair[1]];
@@ -105,10 +97,7 @@ impl Edges {
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::unwrap_used,
-    reason = "a sheet that is not there fails the test"
-)]
+#[allow(clippy::unwrap_used, reason = "a sheet that is not there fails the test")]
 mod tests {
     use super::*;
     use crate::newton::LaneSharing;
@@ -125,19 +114,10 @@ mod tests {
     #[test]
     fn edges_are_known_between_their_samples() {
         for side in Side::BOTH {
-            let rod = Rod {
-                taper: 0.95,
-                bend: 0.4,
-                pole: 0.0125 * side.sign(),
-                ..Rod::default()
-            };
+            let rod = Rod { taper: 0.95, bend: 0.4, pole: 0.0125 * side.sign(), ..Rod::default() };
             let method = Method::fine();
             let row = Row::new(&Rest::new(&rod), 0.1);
-            let case = SheetCase {
-                method,
-                rod: &rod,
-                side,
-            };
+            let case = SheetCase { method, rod: &rod, side };
             let contacts = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
             let edges = Edges::new(case, &contacts);
             let mut checked = 0;
@@ -159,18 +139,12 @@ mod tests {
                     };
                     let found = edge_newton(method, LaneSharing::Open, &[problem])[0];
                     let away = (found.point / problem.start - DVec2::ONE).abs();
-                    assert!(
-                        found.has_converged && away.max_element() < 1e-7,
-                        "{edge:?} {away}"
-                    );
+                    assert!(found.has_converged && away.max_element() < 1e-7, "{edge:?} {away}");
                     let phi = found.here.map.pole.to_angle();
                     assert!((predicted.phi - phi).abs() < 1e-6, "{edge:?}");
                     let second = predicted.second.unwrap()[2];
                     let known = found.here.by_load_load;
-                    assert!(
-                        second.distance(known) < 1e-2 * known.length(),
-                        "{edge:?} {second}"
-                    );
+                    assert!(second.distance(known) < 1e-2 * known.length(), "{edge:?} {second}");
                     checked += 1;
                 }
             }

@@ -67,11 +67,7 @@ pub fn place_between<const N: usize>(
 ) -> f64 {
     let [from, to] = pair.map(|sample| sample.ln_distance);
     let near = ends[0] + (target - from) / (to - from) * (ends[1] - ends[0]);
-    let problem = RootProblem {
-        target,
-        near,
-        bracket: Bracket::new(ends, [from, to]),
-    };
+    let problem = RootProblem { target, near, bracket: Bracket::new(ends, [from, to]) };
     ln_distance.solve(&problem, LAST_STEP_ALONG_EDGE)
 }
 
@@ -137,11 +133,7 @@ impl FoldEdge {
                 }),
             })
             .collect();
-        Self {
-            count: folds.len(),
-            sign: folds[0].load.signum(),
-            pieces,
-        }
+        Self { count: folds.len(), sign: folds[0].load.signum(), pieces }
     }
 
     /// Returns true if the distance grows steadily from the sample `after` to the next one. At a cusp, where two folds meet, it turns back.
@@ -169,11 +161,7 @@ impl FoldEdge {
             tau,
             load: self.sign * libm::exp(piece.ln_q.at(place).0) / (tau * tau),
             phi: piece.phi.at(place).0,
-            second: Some([
-                vector(0) / (tau * tau),
-                vector(2) * tau,
-                vector(4) * tau.powi(4),
-            ]),
+            second: Some([vector(0) / (tau * tau), vector(2) * tau, vector(4) * tau.powi(4)]),
         }
     }
 }

@@ -54,11 +54,7 @@ impl SampledTipEdge {
             let many = TipLoads::new(case, corner, &parts);
             many.samples(&many.extrema())
         };
-        Self {
-            samples,
-            edge,
-            at_touch: few.maps[0],
-        }
+        Self { samples, edge, at_touch: few.maps[0] }
     }
 }
 
@@ -145,13 +141,7 @@ impl<'a> TipLoads<'a> {
         maps.push(corner.variation.map);
         let loads = parts.iter().map(|part| part * corner.load);
         let phis = directions(0.0, loads.zip(&maps)).collect();
-        Self {
-            case,
-            corner,
-            parts,
-            maps,
-            phis,
-        }
+        Self { case, corner, parts, maps, phis }
     }
 
     /// Returns the samples before the corner, including the `extrema` of the distance.
@@ -202,13 +192,7 @@ impl TipEdge {
         });
         let nodes = sampled.parts.iter().copied();
         let [ln_distance, phi, by_load @ ..] = through_nodes(nodes.zip(values));
-        Self {
-            tau: sampled.corner.tau,
-            corner: sampled.corner.load,
-            ln_distance,
-            phi,
-            by_load,
-        }
+        Self { tau: sampled.corner.tau, corner: sampled.corner.load, ln_distance, phi, by_load }
     }
 
     /// Returns the predicted point of the tip edge between two neighbouring samples at which `ln D` is `target`.
@@ -234,11 +218,8 @@ impl TipEdge {
                 let to = slope(pair[0] + third / 3.0 * (pair[1] - pair[0]));
                 let found = DistanceExtremum::between(after, self.corner, [from, to]);
                 if let Some(mut extremum) = found {
-                    let problem = RootProblem {
-                        target: 0.0,
-                        near: extremum.part,
-                        bracket: extremum.parts,
-                    };
+                    let problem =
+                        RootProblem { target: 0.0, near: extremum.part, bracket: extremum.parts };
                     extremum.part = self.by_load[0].solve(&problem, LAST_STEP_ALONG_EDGE);
                     extremum.by_load_load = self.by_load_load(extremum.part);
                     extrema.push(extremum);

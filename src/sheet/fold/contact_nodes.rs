@@ -211,12 +211,7 @@ mod tests {
     /// Compares slopes with differences between neighbours, at a node in the middle and at the tip.
     #[test]
     fn slopes_are_those_between_neighbours() {
-        let slender = Rod {
-            taper: 0.9,
-            bend: 0.3,
-            pole: 0.01,
-            ..Rod::default()
-        };
+        let slender = Rod { taper: 0.9, bend: 0.3, pole: 0.01, ..Rod::default() };
         for (gradient, friction) in [(0.0, 0.0), (0.0, 0.3), (-0.6, 0.0), (2.0, 0.0)] {
             for side in Side::BOTH {
                 let rod = Rod {
@@ -225,11 +220,7 @@ mod tests {
                     friction: side.sign() * friction,
                     ..slender.clone()
                 };
-                let case = SheetCase {
-                    method: Method::fine(),
-                    rod: &rod,
-                    side,
-                };
+                let case = SheetCase { method: Method::fine(), rod: &rod, side };
                 let row = Row::new(&Rest::new(&rod), 0.3);
                 let nodes = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
                 for i in [2, nodes.tip] {
@@ -249,17 +240,8 @@ mod tests {
             friction,
             ..Rod::default()
         };
-        for rod in [
-            cone(0.95, 0.0),
-            cone(1.0, 0.0),
-            cone(0.6, 0.3),
-            cone(0.0, 0.0),
-        ] {
-            let case = SheetCase {
-                method: Method::fine(),
-                rod: &rod,
-                side: Side::Cb,
-            };
+        for rod in [cone(0.95, 0.0), cone(1.0, 0.0), cone(0.6, 0.3), cone(0.0, 0.0)] {
+            let case = SheetCase { method: Method::fine(), rod: &rod, side: Side::Cb };
             let u_tip = u_of(&rod, rod.tau_tip());
             for spacing in [SPACING, 3.0] {
                 let taus = (0..12).map(|i| tau_of(&rod, u_tip - spacing * f64::from(i), 1.0));
@@ -274,11 +256,7 @@ mod tests {
                 }
                 let sampled = predicted.iter().flatten().filter(|fold| fold.has_marched);
                 let expected = if spacing == SPACING { 3..4 } else { 4..12 };
-                assert!(
-                    expected.contains(&sampled.count()),
-                    "{} {spacing}",
-                    rod.taper
-                );
+                assert!(expected.contains(&sampled.count()), "{} {spacing}", rod.taper);
             }
         }
     }
@@ -287,17 +265,11 @@ mod tests {
     #[test]
     fn later_folds_are_not_first() {
         let rod = cone();
-        let case = SheetCase {
-            method: Method::fine(),
-            rod: &rod,
-            side: Side::Cb,
-        };
+        let case = SheetCase { method: Method::fine(), rod: &rod, side: Side::Cb };
         let row = Row::new(&Rest::new(&rod), 0.3);
         let mut nodes = ContactNodes::new(case, &row, SPACING, Folds::Predicted).unwrap();
         assert!(nodes.are_first(case, &row, |_| false));
-        let later = (2..nodes.tip)
-            .find(|i| !nodes.folds[*i].has_marched)
-            .unwrap();
+        let later = (2..nodes.tip).find(|i| !nodes.folds[*i].has_marched).unwrap();
         nodes.folds[later].load *= 1.5;
         let tau = nodes.folds[later].tau;
         assert!(!nodes.are_first(case, &row, |_| false));

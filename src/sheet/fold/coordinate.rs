@@ -8,11 +8,8 @@ use whiskmap_mechanics::rod::{Rod, arclength};
 /// logarithm, because everything scales; toward a slender tip it depends on `tau`. Where the modulus falls toward the tip, its logarithm
 /// is subtracted: continued beyond the tip, the modulus would become 0.
 pub fn u_of(rod: &Rod, tau: f64) -> f64 {
-    let softening = if rod.gradient < 0.0 {
-        libm::log(rod.modulus(arclength(rod, tau)))
-    } else {
-        0.0
-    };
+    let softening =
+        if rod.gradient < 0.0 { libm::log(rod.modulus(arclength(rod, tau))) } else { 0.0 };
     libm::log(tau) + tau - softening
 }
 
@@ -32,22 +29,11 @@ const LAST_TAU_STEP: f64 = 1e-9;
 /// Returns `tau` of a contact with the coordinate `u` (the inverse of [`u_of`]), by Newton's method for `ln tau` from `near`.
 pub fn tau_of(rod: &Rod, u: f64, near: f64) -> f64 {
     let softening = (-rod.gradient).max(0.0);
-    let end = if softening > rod.taper {
-        rod.tau(1.0 / softening)
-    } else {
-        f64::INFINITY
-    };
+    let end = if softening > rod.taper { rod.tau(1.0 / softening) } else { f64::INFINITY };
     let most = if u < 1.0 { libm::exp(u) } else { u };
     // The bracketed function is `u - u_of(tau)`, which falls with `tau`.
-    let bracket = Bracket {
-        below: most.min(end),
-        above: 0.0,
-    };
-    let start = if near < bracket.below {
-        near
-    } else {
-        bracket.middle()
-    };
+    let bracket = Bracket { below: most.min(end), above: 0.0 };
+    let start = if near < bracket.below { near } else { bracket.middle() };
     let newton = |tau| {
         let miss = u - u_of(rod, tau);
         (miss, tau * libm::exp(miss / slope_of_u(rod, tau)))

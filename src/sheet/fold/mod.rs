@@ -258,10 +258,7 @@ fn root(samples: &[f64], dets: &[f64], at: usize) -> f64 {
     let problem = RootProblem {
         target: 0.0,
         near: from + dets[at] / (dets[at] - dets[at + 1]) * (to - from),
-        bracket: Bracket {
-            below: to,
-            above: from,
-        },
+        bracket: Bracket { below: to, above: from },
     };
     det.solve(&problem, LAST_STEP_BETWEEN_SAMPLES * (to - from))
 }
@@ -277,11 +274,7 @@ struct FoldProblem<'a> {
 
 impl<'a> FoldProblem<'a> {
     const fn new(rod: &'a Rod, loads: Bracket) -> Self {
-        Self {
-            rod,
-            loads,
-            untested: [Some(loads.above), Some(loads.below)],
-        }
+        Self { rod, loads, untested: [Some(loads.above), Some(loads.below)] }
     }
 }
 
@@ -311,15 +304,9 @@ impl<'a> NewtonProblem<'a> for FoldProblem<'a> {
         let mut untested = self.untested.iter_mut();
         let next = match loads.is_inside(newton) {
             true => newton,
-            false => untested
-                .find_map(|end| end.take_if(is_end))
-                .unwrap_or_else(|| loads.middle()),
+            false => untested.find_map(|end| end.take_if(is_end)).unwrap_or_else(|| loads.middle()),
         };
-        if next == at.y {
-            NewtonStep::Accept
-        } else {
-            NewtonStep::Shoot(DVec2::new(at.x, next))
-        }
+        if next == at.y { NewtonStep::Accept } else { NewtonStep::Shoot(DVec2::new(at.x, next)) }
     }
 }
 
@@ -352,12 +339,9 @@ fn polish(case: SheetCase, brackets: Vec<Option<FoldBracket>>) -> Vec<Option<Fol
             tau: iterate.point.x,
             load: iterate.point.y,
             variation,
-            phi: directions(
-                bracket.phi,
-                [(before, &map), (iterate.point.y, &variation.map)],
-            )
-            .last()
-            .unwrap_or_default(),
+            phi: directions(bracket.phi, [(before, &map), (iterate.point.y, &variation.map)])
+                .last()
+                .unwrap_or_default(),
             has_marched: bracket.has_marched,
         })
     };
@@ -373,33 +357,21 @@ mod tests {
 
     /// The cone of the paper.
     pub(super) fn cone() -> Rod {
-        Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125,
-            ..Rod::default()
-        }
+        Rod { taper: 0.95, bend: 0.4, pole: 0.0125, ..Rod::default() }
     }
 
     /// Newton's method ends early in brackets on either side of a fold, and finds it in a wide bracket around it.
     #[test]
     fn a_bracket_without_a_root_has_no_fold() {
         let rod = cone();
-        let case = SheetCase {
-            method: Method::fine(),
-            rod: &rod,
-            side: Side::Cb,
-        };
+        let case = SheetCase { method: Method::fine(), rod: &rod, side: Side::Cb };
         let tau = rod.tau(0.7);
         let Some(fold) = first_folds(case, &[tau]).pop().flatten() else {
             panic!("no fold");
         };
         let solved = |parts: [f64; 2]| {
             let loads = parts.map(|part| part * fold.load);
-            let bracket = Bracket {
-                below: loads[0],
-                above: loads[1],
-            };
+            let bracket = Bracket { below: loads[0], above: loads[1] };
             let mut problems = [FoldProblem::new(&rod, bracket)];
             let newton = BatchNewton::new(case.method, POLISH_TRAJECTORIES);
             let start = DVec2::new(tau, 0.5 * (loads[0] + loads[1]));

@@ -70,14 +70,11 @@ fn predictions(
     first: usize,
     step: usize,
 ) -> Vec<PredictedFold> {
-    let known = brackets
-        .iter()
-        .enumerate()
-        .filter_map(|(contact, bracket)| {
-            let bracket = bracket.as_ref()?;
-            let q = bracket.guess / load_scale(case, taus[contact]);
-            Some((contact as f64, [q, bracket.phi]))
-        });
+    let known = brackets.iter().enumerate().filter_map(|(contact, bracket)| {
+        let bracket = bracket.as_ref()?;
+        let q = bracket.guess / load_scale(case, taus[contact]);
+        Some((contact as f64, [q, bracket.phi]))
+    });
     let known: Vec<(f64, [f64; 2])> = known.collect();
     let predicted = (first..taus.len()).step_by(step).filter_map(|contact| {
         let place = contact as f64;

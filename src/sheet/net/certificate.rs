@@ -73,13 +73,9 @@ pub(super) fn certified(
     by_decay: f64,
 ) -> f64 {
     let last = rows.len() - 1;
-    let mut chosen: Vec<usize> = (0..CHECKS)
-        .map(|i| rows[i * last / (CHECKS - 1)].row)
-        .collect();
+    let mut chosen: Vec<usize> = (0..CHECKS).map(|i| rows[i * last / (CHECKS - 1)].row).collect();
     chosen.dedup();
-    let checked = chosen
-        .into_iter()
-        .filter_map(|row| CheckedRow::new(sheet, row, &states(row)?));
+    let checked = chosen.into_iter().filter_map(|row| CheckedRow::new(sheet, row, &states(row)?));
     let checked: Vec<CheckedRow> = checked.collect();
     if checked.is_empty() {
         return f64::NAN;
@@ -90,28 +86,23 @@ pub(super) fn certified(
         .iter()
         .flat_map(|row| (0..CHECKS).map(move |i| (row, row.functions.at(place(i) * row.end))));
     let expanded: Vec<(&CheckedRow, Checked)> = expanded.collect();
-    let points = expanded
-        .iter()
-        .map(|(_, functions)| (functions[1], functions[2]));
+    let points = expanded.iter().map(|(_, functions)| (functions[1], functions[2]));
     let exact: Vec<PlainState> = sheet.case().shoot(points);
     let sign = sheet.side.sign();
-    let misses = expanded
-        .iter()
-        .zip(&exact)
-        .map(|((checked_row, found), exact)| {
-            let [push, tau, _, angle, x, y, chord, energy] = *found;
-            let signed_push = sign * push;
-            let numbers = reader.numbers(tau, exact, checked_row.row.touch + signed_push, chord);
-            let [exact_x, exact_y] = numbers.position;
-            let errors = [
-                angle - numbers.contact_angle,
-                x - exact_x,
-                y - exact_y,
-                chord - numbers.chord,
-                energy - numbers.energy,
-            ];
-            let miss = exact.pole.distance(checked_row.row.pole(signed_push));
-            larger(miss, largest(&errors, &checked_row.weights))
-        });
+    let misses = expanded.iter().zip(&exact).map(|((checked_row, found), exact)| {
+        let [push, tau, _, angle, x, y, chord, energy] = *found;
+        let signed_push = sign * push;
+        let numbers = reader.numbers(tau, exact, checked_row.row.touch + signed_push, chord);
+        let [exact_x, exact_y] = numbers.position;
+        let errors = [
+            angle - numbers.contact_angle,
+            x - exact_x,
+            y - exact_y,
+            chord - numbers.chord,
+            energy - numbers.energy,
+        ];
+        let miss = exact.pole.distance(checked_row.row.pole(signed_push));
+        larger(miss, largest(&errors, &checked_row.weights))
+    });
     larger(MARGIN * misses.fold(by_decay, larger), SMALLEST_RESIDUAL)
 }

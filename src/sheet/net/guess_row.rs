@@ -81,11 +81,8 @@ impl GuessRow {
         let states = blocks.flat_map(|(points, of_block)| {
             let mut parts = [0.0; WIDTH];
             parts[..of_block.len()].copy_from_slice(of_block);
-            let [tau, load] = unit.run(ContactsAndLoads {
-                along: &points.along,
-                parts: &parts,
-                sign,
-            });
+            let [tau, load] =
+                unit.run(ContactsAndLoads { along: &points.along, parts: &parts, sign });
             let phi = points.values[1];
             (0..points.count).map(move |lane| [phi[lane], tau[lane], load[lane]])
         });
@@ -189,18 +186,13 @@ impl GuessRow {
         let targets: Vec<f64> = targets.collect();
         let wanted = [true; 3];
         let tip = arclength(rod, rod.tau_tip());
-        self.inverse
-            .solve(&targets, &wanted, |index, count, block| {
-                for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
-                    let [_, contact, load] = block.values.map(|values| values[lane]);
-                    let tau = if self.is_by_load {
-                        rod.tau(contact.min(tip))
-                    } else {
-                        contact
-                    };
-                    guess.get_or_insert(DVec2::new(tau, load));
-                }
-            });
+        self.inverse.solve(&targets, &wanted, |index, count, block| {
+            for (lane, guess) in guesses[from + index..][..count].iter_mut().enumerate() {
+                let [_, contact, load] = block.values.map(|values| values[lane]);
+                let tau = if self.is_by_load { rod.tau(contact.min(tip)) } else { contact };
+                guess.get_or_insert(DVec2::new(tau, load));
+            }
+        });
     }
 }
 
@@ -221,11 +213,7 @@ impl SimdTask for ContactsAndLoads<'_> {
             let [ln_tau, ln_q] = self.along.each_ref().map(|lanes| pack::<T>(lanes, from));
             let part: T = pack(self.parts, from);
             keep(&mut taus, from, exp(ln_tau));
-            keep(
-                &mut loads,
-                from,
-                T::of(self.sign) * part * exp(ln_q - ln_tau - ln_tau),
-            );
+            keep(&mut loads, from, T::of(self.sign) * part * exp(ln_q - ln_tau - ln_tau));
         }
         [taus, loads]
     }
@@ -274,10 +262,7 @@ mod tests {
         for taper in [0.95, 1.0] {
             let (mut ends, mut detached) = ([0; 2], 0);
             for side in Side::BOTH {
-                let rod = Rod {
-                    taper,
-                    ..cone(side)
-                };
+                let rod = Rod { taper, ..cone(side) };
                 let distances: Vec<f64> = (0..184).map(|i| 0.1 + 0.005 * f64::from(i)).collect();
                 let sheet = Sheet::new(Method::fine(), &rod, side, &distances);
                 for (row, place) in sheet.rows.iter().enumerate() {
@@ -315,11 +300,7 @@ mod tests {
     #[test]
     fn rows_out_of_reach_need_no_panel() {
         for (taper, gradient) in [(0.95, 0.0), (1.0, 0.0), (0.3, -0.9)] {
-            let rod = Rod {
-                taper,
-                gradient,
-                ..cone(Side::Cb)
-            };
+            let rod = Rod { taper, gradient, ..cone(Side::Cb) };
             let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &[0.5, 1.2, 5.0, 10.0]);
             assert!(!sheet.is_continued(), "{taper} {gradient}");
             let found = |row| sheet.guesses(row, &[0.1])[0].is_some();

@@ -77,11 +77,7 @@ impl Panels<GuessPanel> {
         let places = places.filter_map(|(i, row)| PanelRow::new(case.rod, i, row, last(row), 0));
         let mut queue = PanelQueue::new(error, |_, _| true, rows.len(), places);
         while let Some(attempt) = queue.open.pop() {
-            let Attempt {
-                contacts: range,
-                size,
-                ..
-            } = attempt;
+            let Attempt { contacts: range, size, .. } = attempt;
             let along = along(case.rod, contacts, range, size.contacts.max(ALONG));
             let made = GuessPanel::new(case, range, along, size, error);
             queue.store(attempt, made);
@@ -141,10 +137,7 @@ impl GuessPanel {
             let ends = states.iter().zip([0.0, end.push]);
             let error = ends.fold(self.error, |error, ([ln_distance, phi], push)| {
                 let turned = sign * (phi - touch);
-                larger(
-                    error,
-                    larger((ln_distance - level).abs(), (turned - push).abs()),
-                )
+                larger(error, larger((ln_distance - level).abs(), (turned - push).abs()))
             });
             MARGIN * error * row.pole_distance
         };
@@ -181,9 +174,7 @@ impl GuessPanel {
         let places: Vec<f64> = points(over * in_u).chain(inside).collect();
         let columns = determinant.columns(&places);
         // The place in the range of loads itself is found along with the zeros of the determinant.
-        let place = Chebyshev {
-            coefficients: vec![[0.5], [0.5]],
-        };
+        let place = Chebyshev { coefficients: vec![[0.5], [0.5]] };
         let zeros = columns.level(0.0, &place)?;
         let folds: Vec<LaneNumbers> = zeros.iter().map(|zero| zero.along[0]).collect();
         let mut stable = 1.0;
@@ -221,10 +212,7 @@ impl GuessPanel {
         let tau = libm::exp(ln_tau);
         let surely_stable = surely_stable(rod) * (tau / arclength(rod, tau)).powi(2);
         let fold = contacts.fold_ln_q(from + place * (to - from));
-        [
-            surely_stable * libm::exp(-ln_q) / TOP,
-            libm::exp(fold - ln_q) / TOP,
-        ]
+        [surely_stable * libm::exp(-ln_q) / TOP, libm::exp(fold - ln_q) / TOP]
     }
 }
 
@@ -246,28 +234,24 @@ fn points(count: usize) -> impl Iterator<Item = f64> {
 fn tensor(case: SheetCase, size: NetSize, along: &Chebyshev<2>) -> ChebyshevTensor<3> {
     let loads = chebyshev_points(size.loads);
     let contacts = contacts_of(case, size, along);
-    let nodes = contacts
-        .iter()
-        .flat_map(|(tau, most)| loads.iter().map(move |part| (*tau, part * most)));
+    let nodes =
+        contacts.iter().flat_map(|(tau, most)| loads.iter().map(move |part| (*tau, part * most)));
     let maps: Vec<ShootingMap> = case.shoot(nodes);
     let determinant = |map: &ShootingMap| -map.det() * map.pole.length_squared();
     let mut first = 0.0;
     let mut values: Vec<Functions> = Vec::with_capacity(size.loads);
-    let rows = contacts
-        .iter()
-        .zip(maps.chunks(size.loads))
-        .map(|((_, most), maps)| {
-            let between = determinant(&maps[size.loads / 2]).abs();
-            let states = loads.iter().map(|part| part * most).zip(maps);
-            values.clear();
-            values.extend(directions(first, states).zip(maps).map(|(phi, map)| {
-                let ln_distance = libm::log(map.pole.length());
-                [ln_distance, phi, determinant(map) / between]
-            }));
-            // Directions are continuous from contact to contact at the smallest load, too.
-            first = values[0][1];
-            Chebyshev::through(&values)
-        });
+    let rows = contacts.iter().zip(maps.chunks(size.loads)).map(|((_, most), maps)| {
+        let between = determinant(&maps[size.loads / 2]).abs();
+        let states = loads.iter().map(|part| part * most).zip(maps);
+        values.clear();
+        values.extend(directions(first, states).zip(maps).map(|(phi, map)| {
+            let ln_distance = libm::log(map.pole.length());
+            [ln_distance, phi, determinant(map) / between]
+        }));
+        // Directions are continuous from contact to contact at the smallest load, too.
+        first = values[0][1];
+        Chebyshev::through(&values)
+    });
     ChebyshevTensor::through(&rows.collect::<Vec<_>>())
 }
 
@@ -305,12 +289,7 @@ mod tests {
         let spoiled = |function: usize, by: f64| {
             let mut tensor = panel.panel.tensor.clone();
             tensor.coefficients[0][0][function] += by;
-            let NetPanel {
-                contacts,
-                along,
-                size,
-                ..
-            } = panel.panel.clone();
+            let NetPanel { contacts, along, size, .. } = panel.panel.clone();
             GuessPanel {
                 panel: NetPanel::new(contacts, along, size, tensor, columns(size)),
                 error: panel.error,
@@ -329,10 +308,7 @@ mod tests {
                 panel.residuals(sheet.case(), &[(&sheet.rows[1], end)])[0]
             };
             let [sound, wrong] = [0.0, 5e-5].map(residual);
-            assert!(
-                sound < MARGIN * 1e-6 && wrong > MARGIN * 4e-5 * 0.5,
-                "{sound} {wrong}"
-            );
+            assert!(sound < MARGIN * 1e-6 && wrong > MARGIN * 4e-5 * 0.5, "{sound} {wrong}");
         }
         let outside = Row::new(&Rest::new(&rod), 0.05);
         assert!(panel.residuals(sheet.case(), &[(&outside, end)])[0].is_nan());
@@ -347,11 +323,7 @@ mod tests {
     #[test]
     fn folds_that_nodes_do_not_show_are_found() {
         let rod = cone(Side::Cb);
-        let case = SheetCase {
-            method: Method::fine(),
-            rod: &rod,
-            side: Side::Cb,
-        };
+        let case = SheetCase { method: Method::fine(), rod: &rod, side: Side::Cb };
         let rest = Rest::new(&rod);
         let rows: Vec<Row> = [0.3, 0.5, 0.7].map(|d| Row::new(&rest, d)).into();
         let contacts = ContactNodes::new(case, &rows[0], SPACING, Folds::Predicted).unwrap();
@@ -359,9 +331,7 @@ mod tests {
         let panel = &panels.of_all_rows().unwrap()[0];
         assert!(panel.shows_folds(&rod, &contacts));
         let value = |x: f64, y: f64| {
-            let in_y = |terms: &Vec<[f64; 1]>| Chebyshev {
-                coefficients: terms.clone(),
-            };
+            let in_y = |terms: &Vec<[f64; 1]>| Chebyshev { coefficients: terms.clone() };
             let determinant = panel.panel.tensor.transposed(DETERMINANT);
             let terms = determinant.coefficients.iter();
             let terms = terms.map(|terms| in_y(terms).at(x)).collect();

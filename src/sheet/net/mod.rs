@@ -139,11 +139,7 @@ impl<P> PanelQueue<P> {
             pays,
             rows,
             open: Vec::new(),
-            found: Panels {
-                panels: Vec::new(),
-                panel_of: vec![None; count],
-                are_complete: true,
-            },
+            found: Panels { panels: Vec::new(), panel_of: vec![None; count], are_complete: true },
         };
         queue.begin(0..long, 0);
         queue.begin(long..all, HALVINGS);
@@ -156,9 +152,9 @@ impl<P> PanelQueue<P> {
         let Some(first) = panel_rows.first() else {
             return;
         };
-        let contacts = panel_rows.iter().fold(first.contacts, |[from, to], row| {
-            [from, to.max(row.contacts[1])]
-        });
+        let contacts = panel_rows
+            .iter()
+            .fold(first.contacts, |[from, to], row| [from, to.max(row.contacts[1])]);
         let range = contacts[1] - contacts[0];
         let size = NetSize::first(self.aim, range);
         match self.halves(&rows, halvings) {
@@ -167,13 +163,9 @@ impl<P> PanelQueue<P> {
                     self.begin(half, halvings);
                 }
             }
-            _ if (self.pays)(size, panel_rows) => self.open.push(Attempt {
-                rows,
-                contacts,
-                size,
-                tries: 1,
-                halvings,
-            }),
+            _ if (self.pays)(size, panel_rows) => {
+                self.open.push(Attempt { rows, contacts, size, tries: 1, halvings })
+            }
             _ => self.found.are_complete = false,
         }
     }
@@ -207,11 +199,7 @@ impl<P> PanelQueue<P> {
             Err(Some(size))
                 if attempt.tries < TRIES && (self.pays)(size, self.rows_of(&attempt)) =>
             {
-                self.open.push(Attempt {
-                    size,
-                    tries: attempt.tries + 1,
-                    ..attempt
-                });
+                self.open.push(Attempt { size, tries: attempt.tries + 1, ..attempt });
             }
             Err(_) => match self.halves(&attempt.rows, attempt.halvings) {
                 Some(halves) => {
@@ -248,10 +236,5 @@ impl<P> Panels<P> {
 /// Returns the cone of the paper on this side, for tests.
 #[cfg(test)]
 fn cone(side: whiskmap_mechanics::rod::Side) -> Rod {
-    Rod {
-        taper: 0.95,
-        bend: 0.4,
-        pole: 0.0125 * side.sign(),
-        ..Rod::default()
-    }
+    Rod { taper: 0.95, bend: 0.4, pole: 0.0125 * side.sign(), ..Rod::default() }
 }

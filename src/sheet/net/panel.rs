@@ -88,19 +88,12 @@ impl<const F: usize> NetPanel<F> {
         tensor: ChebyshevTensor<F>,
         columns: usize,
     ) -> Self {
-        Self {
-            size,
-            contacts,
-            along,
-            columns: tensor.columns(chebyshev_points(columns)),
-            tensor,
-        }
+        Self { size, contacts, along, columns: tensor.columns(chebyshev_points(columns)), tensor }
     }
 
     /// Removes the coefficients that are below rounding from the tensor; `weights` convert errors of the functions to whisker lengths.
     pub fn shorten(&mut self, weights: &[f64; F]) {
-        self.tensor
-            .shorten(|terms| largest(terms, weights) < ROUNDING);
+        self.tensor.shorten(|terms| largest(terms, weights) < ROUNDING);
     }
 
     /// Returns the sizes of the last coefficients in both coordinates; `weights` convert errors of the functions to whisker lengths.
@@ -159,10 +152,6 @@ impl<const F: usize> NetPanel<F> {
         let points = columns.level(libm::log(row.pole_distance), &self.along)?;
         let parts = chebyshev_points(columns.count()).iter();
         let parts = parts.map(|point| TOP * (from + point * (to - from)));
-        Some(PanelLine {
-            points,
-            parts: parts.collect(),
-            end,
-        })
+        Some(PanelLine { points, parts: parts.collect(), end })
     }
 }

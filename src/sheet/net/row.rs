@@ -61,10 +61,7 @@ impl NetRow {
                 turns: turned - touch,
             })
         });
-        Self {
-            blocks: blocks.collect(),
-            end: line.end,
-        }
+        Self { blocks: blocks.collect(), end: line.end }
     }
 }
 
@@ -93,16 +90,9 @@ impl SimdTask for States<'_> {
             numbers: StateNumbers::default(),
         };
         for from in (0..block.count).step_by(T::LANES) {
-            let [_, phi, angle, x, y, chord, energy] = self
-                .points
-                .values
-                .each_ref()
-                .map(|lanes| pack::<T>(lanes, from));
-            let [ln_tau, ln_q] = self
-                .points
-                .along
-                .each_ref()
-                .map(|lanes| pack::<T>(lanes, from));
+            let [_, phi, angle, x, y, chord, energy] =
+                self.points.values.each_ref().map(|lanes| pack::<T>(lanes, from));
+            let [ln_tau, ln_q] = self.points.along.each_ref().map(|lanes| pack::<T>(lanes, from));
             let (sign, tau) = (T::of(self.sign), exp(ln_tau));
             let load = sign * pack(self.parts, from) * exp(ln_q - ln_tau - ln_tau);
             let [radius, arclength] = radius_and_arclength(T::of(self.taper), tau);

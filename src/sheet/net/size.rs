@@ -104,24 +104,15 @@ mod tests {
     #[test]
     fn the_decay_gives_the_number_of_points() {
         let tail = |first: i32| 0.3_f64.powi(first);
-        let tail = NetTail {
-            last: tail(13),
-            before: tail(10),
-        };
+        let tail = NetTail { last: tail(13), before: tail(10) };
         let points = tail.points(16, 1e-11);
         // 0.3^21.04 is 1e-11: 8.04 more, and a tenth.
         assert_eq!(points, Some(16 + 9));
         assert_eq!(tail.points(16, 1e-6), Some(16));
-        let flat = NetTail {
-            last: 1e-3,
-            before: 1e-3,
-        };
+        let flat = NetTail { last: 1e-3, before: 1e-3 };
         assert_eq!(flat.points(16, 1e-11), None);
         assert_eq!(tail.points(36, 1e-11), None);
-        let unknown = NetTail {
-            last: f64::NAN,
-            ..flat
-        };
+        let unknown = NetTail { last: f64::NAN, ..flat };
         assert_eq!(unknown.points(16, 1e-11), None);
     }
 }

@@ -21,12 +21,7 @@ use whiskmap_mechanics::shooting::{PlainState, Reader};
 type Functions = [f64; FUNCTIONS];
 
 /// Units of dimensionless numbers.
-const NO_UNITS: Units = Units {
-    length_mm: 1.0,
-    force_un: 1.0,
-    moment_nnm: 1.0,
-    strain: 1.0,
-};
+const NO_UNITS: Units = Units { length_mm: 1.0, force_un: 1.0, moment_nnm: 1.0, strain: 1.0 };
 
 /// Number of points of contact and scale of the load as functions of `u`.
 pub const ALONG: usize = 32;
@@ -68,11 +63,7 @@ impl Grid {
     /// Creates the grid of a panel of `sheet`, which has these `samples`.
     fn new(sheet: &Sheet, samples: &SheetSamples, attempt: Attempt) -> Self {
         let along = along(&sheet.rod, &samples.contacts, attempt.contacts, ALONG);
-        Self {
-            contacts: contacts_of(sheet.case(), attempt.size, &along),
-            along,
-            attempt,
-        }
+        Self { contacts: contacts_of(sheet.case(), attempt.size, &along), along, attempt }
     }
 
     /// Returns contact and load of each trajectory, `(tau, load)`, contact by contact.
@@ -163,10 +154,7 @@ impl ValueNet {
     /// Returns the largest number of loads of a panel.
     #[must_use]
     pub fn loads(&self) -> usize {
-        let loads = self
-            .panels
-            .iter()
-            .map(|value_panel| value_panel.panel.size.loads);
+        let loads = self.panels.iter().map(|value_panel| value_panel.panel.size.loads);
         loads.max().unwrap_or(0)
     }
 }
@@ -187,11 +175,7 @@ impl ValuePanel {
         let tensor = tensor(&reader, grid, states);
         let Attempt { contacts, size, .. } = grid.attempt;
         let panel = NetPanel::new(contacts, grid.along.clone(), size, tensor, size.columns());
-        let mut value_panel = Self {
-            panel,
-            residual: f64::NAN,
-            reader,
-        };
+        let mut value_panel = Self { panel, residual: f64::NAN, reader };
         let error = value_panel.error();
         // NaN is not below any bound.
         let has_converged = MARGIN * error <= most;
@@ -224,15 +208,7 @@ impl ValuePanel {
     fn weights(&self) -> Functions {
         let [ln_tau, _] = self.panel.along.at(0.0);
         let position = VALUE_WEIGHT / libm::exp(ln_tau).min(1.0);
-        [
-            1.0,
-            1.0,
-            VALUE_WEIGHT,
-            position,
-            position,
-            VALUE_WEIGHT,
-            VALUE_WEIGHT,
-        ]
+        [1.0, 1.0, VALUE_WEIGHT, position, position, VALUE_WEIGHT, VALUE_WEIGHT]
     }
 
     /// Returns the states of a `row` of `sheet`, from first touch to its only other end. `None` if the row has other ends, or is not in the panel.
@@ -253,34 +229,26 @@ fn tensor(reader: &Reader, grid: &Grid, states: &[PlainState]) -> ChebyshevTenso
     let loads = grid.attempt.size.loads;
     // Directions are continuous along the load, and from contact to contact at the smallest load.
     let mut first = 0.0;
-    let rows = grid
-        .contacts
-        .iter()
-        .zip(states.chunks(loads))
-        .map(|((tau, _), states)| {
-            let (mut phi, mut chord) = (first, 0.0);
-            let values = states.iter().map(|state| {
-                phi = nearest_turn(state.pole.to_angle(), phi);
-                let numbers = reader.numbers(*tau, state, phi, chord);
-                chord = numbers.chord;
-                let [x, y] = numbers.position;
-                let (ln_distance, angle) = (libm::log(state.pole.length()), numbers.contact_angle);
-                let energy = numbers.energy / (numbers.force.abs() * numbers.arclength);
-                [ln_distance, phi, angle, x, y, chord, energy]
-            });
-            let values: Vec<Functions> = values.collect();
-            first = values.first().map_or(0.0, |functions| functions[1]);
-            Chebyshev::through(&values)
+    let rows = grid.contacts.iter().zip(states.chunks(loads)).map(|((tau, _), states)| {
+        let (mut phi, mut chord) = (first, 0.0);
+        let values = states.iter().map(|state| {
+            phi = nearest_turn(state.pole.to_angle(), phi);
+            let numbers = reader.numbers(*tau, state, phi, chord);
+            chord = numbers.chord;
+            let [x, y] = numbers.position;
+            let (ln_distance, angle) = (libm::log(state.pole.length()), numbers.contact_angle);
+            let energy = numbers.energy / (numbers.force.abs() * numbers.arclength);
+            [ln_distance, phi, angle, x, y, chord, energy]
         });
+        let values: Vec<Functions> = values.collect();
+        first = values.first().map_or(0.0, |functions| functions[1]);
+        Chebyshev::through(&values)
+    });
     ChebyshevTensor::through(&rows.collect::<Vec<_>>())
 }
 
 #[cfg(test)]
-#[allow(
-    clippy::unwrap_used,
-    clippy::panic,
-    reason = "a test fails by panicking"
-)]
+#[allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 mod tests {
     use super::*;
     use crate::sheet::Edge;
@@ -296,12 +264,7 @@ mod tests {
 
     /// The cone of the paper, with rows that end at the fold and at the tip.
     fn cone() -> (Sheet, Vec<PanelRow>) {
-        let rod = Rod {
-            taper: 0.95,
-            bend: 0.4,
-            pole: 0.0125,
-            ..Rod::default()
-        };
+        let rod = Rod { taper: 0.95, bend: 0.4, pole: 0.0125, ..Rod::default() };
         let distances: Vec<f64> = (0..60).map(|i| 0.4 + 0.01 * f64::from(i)).collect();
         let sheet = Sheet::new(Method::fine(), &rod, Side::Cb, &distances);
         let rows = sheet.rows.iter().enumerate();
@@ -313,10 +276,7 @@ mod tests {
         (sheet, panel_rows)
     }
 
-    const SIZE: NetSize = NetSize {
-        contacts: 28,
-        loads: 24,
-    };
+    const SIZE: NetSize = NetSize { contacts: 28, loads: 24 };
 
     /// The grid of all rows, and the states of its nodes.
     fn grid(sheet: &Sheet, rows: &[PanelRow]) -> (Grid, Vec<PlainState>) {
@@ -350,9 +310,7 @@ mod tests {
     }
 
     fn with_tensor(panel: &ValuePanel, tensor: ChebyshevTensor<FUNCTIONS>) -> ValuePanel {
-        let NetPanel {
-            contacts, along, ..
-        } = &panel.panel;
+        let NetPanel { contacts, along, .. } = &panel.panel;
         ValuePanel {
             panel: NetPanel::new(*contacts, along.clone(), SIZE, tensor, SIZE.columns()),
             ..panel.clone()

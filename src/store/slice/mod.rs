@@ -37,11 +37,7 @@ impl MapSlice {
     #[must_use]
     pub const fn of_part(source: MapSource, part: GridPart) -> Self {
         let blank = Vec::new();
-        Self {
-            source,
-            part,
-            blank,
-        }
+        Self { source, part, blank }
     }
 
     /// Creates the slice that is the whole of `source`.
@@ -153,13 +149,7 @@ impl MapSlice {
             return Ok(Vec::new());
         };
         let panels = 0..self.part.grid.whisker_count();
-        let strain = |panel| {
-            scene
-                .whisker(self.in_whole(panel))
-                .ok()?
-                .whisker
-                .yield_strain
-        };
+        let strain = |panel| scene.whisker(self.in_whole(panel)).ok()?.whisker.yield_strain;
         Ok(panels.map(strain).collect())
     }
 
@@ -195,10 +185,8 @@ impl MapSlice {
     #[must_use]
     pub fn shape(&self) -> Vec<usize> {
         let sweep = self.part.grid.sweep.iter().map(|axis| axis.values.len());
-        let inside = [
-            ("distance_mm", self.part.rows.len()),
-            ("push_angle_deg", self.part.columns.len()),
-        ];
+        let inside =
+            [("distance_mm", self.part.rows.len()), ("push_angle_deg", self.part.columns.len())];
         let is_left = |name: &str| self.part.chosen.iter().all(|(chosen, _)| *chosen != name);
         let inside = inside.into_iter().filter(|(name, _)| is_left(name));
         sweep.chain(inside.map(|(_, size)| size)).collect()

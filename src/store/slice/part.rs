@@ -45,15 +45,9 @@ impl GridPart {
 
     fn choose(&mut self, whole: &Grid, at: &AxisValue, exact: bool) -> Result<(), String> {
         let sweep = whole.sweep.iter().map(NamedAxis::of);
-        let inside = [
-            ("distance_mm", &*whole.distance_mm),
-            ("push_angle_deg", &*whole.push_angle_deg),
-        ]
-        .map(|(name, values)| NamedAxis {
-            name,
-            values,
-            names: &[],
-        });
+        let inside =
+            [("distance_mm", &*whole.distance_mm), ("push_angle_deg", &*whole.push_angle_deg)]
+                .map(|(name, values)| NamedAxis { name, values, names: &[] });
         let axes: Vec<_> = sweep.chain(inside).collect();
         let (axis, index) = select(&axes, &self.chosen, at, exact)?;
         let (name, value) = (axes[axis].name, axes[axis].values[index]);

@@ -15,10 +15,7 @@ impl MapSlice {
     pub fn read_panel(&self, channel: &str, whisker: usize) -> Result<ChannelValues, StoreError> {
         let panels = self.part.grid.whisker_count();
         if whisker >= panels {
-            return Err(StoreError::NoSuchPanel {
-                index: whisker,
-                panels,
-            });
+            return Err(StoreError::NoSuchPanel { index: whisker, panels });
         }
         if self.is_blank(self.in_whole(whisker)) {
             let cells = self.part.rows.len() * self.part.columns.len();
@@ -29,12 +26,8 @@ impl MapSlice {
         }
         let width = self.source.grid().push_angle_deg.len();
         let rows = self.part.rows.iter();
-        let cells = rows.flat_map(|row| {
-            self.part
-                .columns
-                .iter()
-                .map(move |column| row * width + column)
-        });
+        let cells =
+            rows.flat_map(|row| self.part.columns.iter().map(move |column| row * width + column));
         let samples = self.source.read_panel(channel, self.in_whole(whisker))?;
         Ok(match samples {
             ChannelValues::F32(values) => {

@@ -45,11 +45,7 @@ impl ZarrArray {
             "index_location": "end",
         } }]);
         let array = Self::new(name, kind, [&all, &file], dimensions, (about, codecs));
-        Self {
-            chunk_values: chunk.iter().product(),
-            encoding,
-            ..array
-        }
+        Self { chunk_values: chunk.iter().product(), encoding, ..array }
     }
 
     /// The values along an axis, in one chunk that is not packed.
@@ -192,10 +188,7 @@ mod tests {
         let values: Vec<f32> = (0..51).map(|i| i as f32).collect();
         let axis = ZarrArray::of_axis("force_un", ValueKind::Quantity, 34, json!({}));
         let width = Some(17);
-        let encoding = ChunkEncoding {
-            width,
-            ..ChunkEncoding::default()
-        };
+        let encoding = ChunkEncoding { width, ..ChunkEncoding::default() };
         let array = ZarrArray { encoding, ..axis };
         let packed = array.pack(bytemuck::cast_slice(&values));
         let frames = || packed.iter().map(|chunk| &chunk[..chunk.len() - 4]);
@@ -205,10 +198,7 @@ mod tests {
         let found = numbers(array.unpack(frames()));
         assert_eq!(found[..51], values);
         assert!(found.len() == 68 && found[51..].iter().all(|value| value.is_nan()));
-        let columns = ZarrArray {
-            encoding: ChunkEncoding::default(),
-            ..array
-        };
+        let columns = ZarrArray { encoding: ChunkEncoding::default(), ..array };
         let columns = numbers(columns.unpack(frames()));
         assert_eq!(columns[..4], [0.0, 17.0, 1.0, 18.0]);
     }

@@ -36,11 +36,7 @@ impl Blocks {
             room = room.max(1);
             taken
         });
-        Self {
-            shape: shape.collect(),
-            axes,
-            panel,
-        }
+        Self { shape: shape.collect(), axes, panel }
     }
 
     /// Returns the number of blocks of the sweep.

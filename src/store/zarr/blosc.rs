@@ -149,11 +149,7 @@ mod tests {
     fn values(count: usize, size: usize, is_noise: bool) -> Vec<u8> {
         let value = |i: usize| {
             let smooth = (i as u32 / 7).to_be_bytes().map(|byte| byte ^ 0x5a);
-            let value = if is_noise {
-                (hash(i as u64) as u32).to_be_bytes()
-            } else {
-                smooth
-            };
+            let value = if is_noise { (hash(i as u64) as u32).to_be_bytes() } else { smooth };
             value[..size].to_vec()
         };
         (0..count).flat_map(value).collect()
@@ -175,15 +171,8 @@ mod tests {
 
     #[test]
     fn what_is_packed_comes_back_and_nothing_else_does() {
-        let cases = [
-            (1, 1, false),
-            (900, 1, true),
-            (900, 4, false),
-            (900, 4, true),
-        ];
-        let cases = Codec::ALL
-            .into_iter()
-            .flat_map(|codec| cases.map(|case| (codec, case)));
+        let cases = [(1, 1, false), (900, 1, true), (900, 4, false), (900, 4, true)];
+        let cases = Codec::ALL.into_iter().flat_map(|codec| cases.map(|case| (codec, case)));
         for (codec, (count, size, is_noise)) in cases {
             let values = values(count, size, is_noise);
             let planes = match size {
@@ -204,12 +193,8 @@ mod tests {
             let stream = codec.compress(&planes[1..]);
             let numbers = [planes.len(), size, BEFORE_STREAM + stream.len()];
             let before = [OVERHEAD as u32 + 4, stream.len() as u32].map(u32::to_le_bytes);
-            let short = [
-                &header(codec, numbers, false)[..],
-                before.as_flattened(),
-                &stream,
-            ]
-            .concat();
+            let short =
+                [&header(codec, numbers, false)[..], before.as_flattened(), &stream].concat();
             assert!(unpack(&short, [count, size], &mut found).is_err());
         }
     }

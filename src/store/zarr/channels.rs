@@ -44,14 +44,12 @@ pub(super) fn with_flags(name: &str, mut about: Value) -> Value {
         about["flag_meanings"] = json!(names.join(" "));
     };
     match name {
-        "regime" => flags(
-            Regime::ALL.map(Regime::code).to_vec(),
-            Regime::ALL.map(Regime::name).to_vec(),
-        ),
-        "status" => flags(
-            Status::ALL.map(Status::code).to_vec(),
-            Status::ALL.map(Status::name).to_vec(),
-        ),
+        "regime" => {
+            flags(Regime::ALL.map(Regime::code).to_vec(), Regime::ALL.map(Regime::name).to_vec())
+        }
+        "status" => {
+            flags(Status::ALL.map(Status::code).to_vec(), Status::ALL.map(Status::name).to_vec())
+        }
         _ => {}
     }
     about

@@ -41,9 +41,7 @@ impl ZarrStore {
         let restored = self.restore_metadata(temporary)?;
         let folders = self.arrays.iter().map(|array| self.path.join(&array.name));
         for folder in folders.chain([self.path.clone()]) {
-            temporary
-                .prepare(&folder)
-                .map_err(StoreError::at(&folder, StoreError::Write))?;
+            temporary.prepare(&folder).map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         Ok(restored)
     }
@@ -100,10 +98,7 @@ impl ZarrStore {
     fn root(&self) -> Vec<u8> {
         let constants = self.constants();
         let constants = constants.iter().map(|(array, _)| array);
-        json(&metadata::group(
-            &self.attributes,
-            constants.chain(&self.arrays),
-        ))
+        json(&metadata::group(&self.attributes, constants.chain(&self.arrays)))
     }
 
     fn constants(&self) -> Vec<(ZarrArray, Vec<u8>)> {
@@ -147,10 +142,9 @@ pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<StoreError> {
             let why = "it is not as the scene demands";
             Some(StoreError::Damaged(path.to_owned(), why.to_owned()))
         }
-        Err(StoreError::NotComputed(_)) => Some(StoreError::Damaged(
-            path.to_owned(),
-            "it is missing".to_owned(),
-        )),
+        Err(StoreError::NotComputed(_)) => {
+            Some(StoreError::Damaged(path.to_owned(), "it is missing".to_owned()))
+        }
         Err(why) => Some(why),
     }
 }
@@ -158,9 +152,7 @@ pub(super) fn metadata_fault(path: &Path, bytes: &[u8]) -> Option<StoreError> {
 /// Writes a metadata file again. Returns true if it existed.
 fn restore(path: &Path, bytes: &[u8], temporary: &TemporaryFiles) -> Result<bool, StoreError> {
     let was_there = path.exists();
-    let folder = path
-        .parent()
-        .map_or(Ok(()), |folder| temporary.create_folders(folder));
+    let folder = path.parent().map_or(Ok(()), |folder| temporary.create_folders(folder));
     folder.map_err(StoreError::at(path, StoreError::Write))?;
     write(path, &[bytes], temporary)?;
     Ok(was_there)

@@ -8,15 +8,8 @@ use twox_hash::XxHash3_128;
 pub(super) const IDENTITY: &str = "identity";
 
 /// The attributes in which all runs that fill a store must agree; the first that differs is named.
-pub(super) const AGREED: [&str; 7] = [
-    "whiskmap_version",
-    "engine",
-    "arithmetic",
-    "tolerances",
-    "channels",
-    "scene",
-    DIGITS,
-];
+pub(super) const AGREED: [&str; 7] =
+    ["whiskmap_version", "engine", "arithmetic", "tolerances", "channels", "scene", DIGITS];
 
 /// Identity of a store: the XXH3-128 hash of the attributes in which all runs that fill it agree.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -48,18 +48,13 @@ pub(super) fn arrays(
         let is_turned =
             STATE_CHANNELS.contains(&name) || ["residual", "peak_strain"].contains(&name);
         let kept_bits = digits.mantissa_bits(name);
-        let encoding = ChunkEncoding {
-            width: is_turned.then_some(push_angles),
-            kept_bits,
-        };
+        let encoding = ChunkEncoding { width: is_turned.then_some(push_angles), kept_bits };
         let sizes = (&sizes[..], encoding);
         if let Some(bits) = kept_bits {
             about["quantization"] = json!(QUANTIZATION);
             about["quantization_nsb"] = json!(bits);
         }
-        arrays.push(ZarrArray::in_blocks(
-            name, kind, blocks, sizes, &of_cells, about,
-        ));
+        arrays.push(ZarrArray::in_blocks(name, kind, blocks, sizes, &of_cells, about));
     }
     arrays
 }
@@ -132,10 +127,7 @@ pub(super) fn constants(grid: &Grid, digits: Digits) -> Vec<(ZarrArray, Vec<u8>)
 fn packed(values: &[Coordinate]) -> (ValueKind, Vec<u8>) {
     let numbers: Option<Vec<f64>> = values.iter().map(Coordinate::number).collect();
     if let Some(numbers) = numbers {
-        return (
-            ValueKind::Coordinate,
-            bytemuck::cast_slice(&numbers).to_vec(),
-        );
+        return (ValueKind::Coordinate, bytemuck::cast_slice(&numbers).to_vec());
     }
     // `vlen-utf8`: the number of texts, then each with its length.
     let count = |count: usize| (count as u32).to_le_bytes();

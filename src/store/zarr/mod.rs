@@ -73,19 +73,11 @@ impl ZarrStore {
         about: &MapDescription<'_>,
         may_exist: bool,
     ) -> Result<Self, StoreError> {
-        let about = MapDescription {
-            channels: about.channels.with("regime"),
-            ..*about
-        };
+        let about = MapDescription { channels: about.channels.with("regime"), ..*about };
         let attributes = metadata::attributes(&about, scene);
         let store = Self {
             may_exist,
-            ..Self::new(
-                path,
-                attributes,
-                scene.clone(),
-                (about.channels, about.digits),
-            )
+            ..Self::new(path, attributes, scene.clone(), (about.channels, about.digits))
         };
         store.agree()?;
         Ok(store)
@@ -111,10 +103,7 @@ impl ZarrStore {
         };
         let version = text("whiskmap_version")?;
         if !is_compatible(version) {
-            return Err(StoreError::OtherVersion(
-                path.to_owned(),
-                version.to_owned(),
-            ));
+            return Err(StoreError::OtherVersion(path.to_owned(), version.to_owned()));
         }
         if text(identity::IDENTITY)? != StoreIdentity::of(&attributes).text() {
             let names = identity::AGREED.join(", ");
@@ -124,9 +113,7 @@ impl ZarrStore {
             return Err(StoreError::Damaged(path.join(METADATA), why));
         }
         let scene = Scene::parse(text("scene")?, "its scene").map_err(|why| foreign(&why))?;
-        let channels = text("channels")?
-            .parse()
-            .map_err(|why: String| foreign(&why))?;
+        let channels = text("channels")?.parse().map_err(|why: String| foreign(&why))?;
         let digits = match attributes.get(DIGITS) {
             None => Digits::ALL,
             Some(_) => text(DIGITS)?.parse().map_err(|why: String| foreign(&why))?,

@@ -55,10 +55,7 @@ impl ZarrStore {
             CELLS => Vec::new(),
             name => array.pack(&values(name, panel)),
         });
-        PackedPanel {
-            chunks: packed.collect(),
-            counts,
-        }
+        PackedPanel { chunks: packed.collect(), counts }
     }
 
     /// Packs `panels` of a run of `plan`, and returns how many bytes they take without headers.

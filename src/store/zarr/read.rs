@@ -49,13 +49,13 @@ impl ZarrStore {
         whiskers: Range<usize>,
     ) -> Result<ChannelValues, StoreError> {
         let mut arrays = self.arrays.iter();
-        let array = arrays
-            .find(|array| array.name == name && name != CELLS)
-            .ok_or_else(|| StoreError::UnknownChannel {
+        let array = arrays.find(|array| array.name == name && name != CELLS).ok_or_else(|| {
+            StoreError::UnknownChannel {
                 path: self.path.clone(),
                 name: name.to_owned(),
                 known: self.channels.to_string(),
-            })?;
+            }
+        })?;
         let panel_bytes = self.blocks.panel.iter().product::<usize>() * array.kind.size();
         let mut bytes = Vec::with_capacity(whiskers.len() * panel_bytes);
         let mut next = whiskers.start;

@@ -36,11 +36,7 @@ pub(super) fn assemble<'a>(
     index.extend(checksum.to_le_bytes());
     let head = Cow::from(identity.to_vec());
     let chunks = chunks.map(Cow::from);
-    [head]
-        .into_iter()
-        .chain(chunks)
-        .chain([index.into()])
-        .collect()
+    [head].into_iter().chain(chunks).chain([index.into()]).collect()
 }
 
 /// Identity and sizes that a file of a block must have.
@@ -71,10 +67,7 @@ impl ExpectedFile {
     ) -> io::Result<Option<String>> {
         let length = file.seek(SeekFrom::End(0))?;
         let index_bytes = self.index_bytes();
-        let Some(end) = length
-            .checked_sub(index_bytes as u64)
-            .filter(|end| *end >= HEAD)
-        else {
+        let Some(end) = length.checked_sub(index_bytes as u64).filter(|end| *end >= HEAD) else {
             return Ok(Some(format!("its {length} bytes are too few")));
         };
         if length > self.most_bytes() {

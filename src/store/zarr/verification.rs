@@ -77,9 +77,8 @@ impl ZarrStore {
     }
 
     fn agree_with(&self, there: &Self) -> Result<(), StoreError> {
-        let apart = AGREED
-            .iter()
-            .find(|name| self.attributes.get(**name) != there.attributes.get(**name));
+        let apart =
+            AGREED.iter().find(|name| self.attributes.get(**name) != there.attributes.get(**name));
         let Some(name) = apart else {
             return Ok(());
         };
@@ -90,12 +89,7 @@ impl ZarrStore {
         };
         let (there, here) = (text(there), text(self));
         let [there, here] = first_difference(&there, &here);
-        Err(StoreError::AtOdds {
-            path: self.path.clone(),
-            name,
-            there,
-            here,
-        })
+        Err(StoreError::AtOdds { path: self.path.clone(), name, there, here })
     }
 
     /// Checks that the store at its path still has this identity.
@@ -206,10 +200,7 @@ impl ZarrStore {
         }
         if faults.is_empty() {
             BlockState::Done
-        } else if faults
-            .iter()
-            .any(|fault| matches!(fault, StoreError::Read(..)))
-        {
+        } else if faults.iter().any(|fault| matches!(fault, StoreError::Read(..))) {
             BlockState::Unreadable(faults)
         } else {
             BlockState::Damaged(faults)
@@ -269,10 +260,7 @@ impl ZarrStore {
         let found = of_whisker.flat_map(|cells| {
             Regime::ALL.map(|regime| {
                 let code = regime.code();
-                cells
-                    .iter()
-                    .filter(|cell| u32::from(**cell) == code)
-                    .count() as u32
+                cells.iter().filter(|cell| u32::from(**cell) == code).count() as u32
             })
         });
         if !found.eq(counted) {
@@ -281,9 +269,7 @@ impl ZarrStore {
         }
         let unknown = cells.iter().find(|code| {
             **code != NOT_COMPUTED
-                && Regime::ALL
-                    .iter()
-                    .all(|regime| regime.code() != u32::from(**code))
+                && Regime::ALL.iter().all(|regime| regime.code() != u32::from(**code))
         });
         unknown.map_or(Ok(()), |code| {
             let why = format!("the code {code} has no name");
@@ -299,15 +285,10 @@ impl ZarrStore {
     pub fn metadata_faults(&self) -> Result<Vec<StoreError>, StoreError> {
         let version = self.attribute("whiskmap_version")?;
         if version != env!("CARGO_PKG_VERSION") {
-            return Err(StoreError::OtherVersion(
-                self.path.clone(),
-                version.to_string(),
-            ));
+            return Err(StoreError::OtherVersion(self.path.clone(), version.to_string()));
         }
         let files = self.metadata_files();
-        let faults = files
-            .iter()
-            .filter_map(|(path, bytes)| metadata_fault(path, bytes));
+        let faults = files.iter().filter_map(|(path, bytes)| metadata_fault(path, bytes));
         Ok(faults.collect())
     }
 

@@ -37,10 +37,7 @@ fn a_straight_cylinder_has_no_effects() {
     assert_eq!(fact(&run, "cells"), cells);
     let calls = "1: groups of 1 whisker, 1 side of 2 rows, 1024 rows a call";
     assert_eq!(fact(&run, "GPU calls"), calls);
-    assert_eq!(
-        fact(&run, "GPU memory"),
-        "224 MiB more than below, on the host"
-    );
+    assert_eq!(fact(&run, "GPU memory"), "224 MiB more than below, on the host");
     // 4 MiB for each thread, 256 KiB for the sheet of the only side, and 16 cells.
     let threads = std::thread::available_parallelism().unwrap();
     let mib = 4 * threads.get() + 1;
@@ -71,8 +68,5 @@ fn the_cone_scene() {
     assert_eq!(same(&run), same(&again));
     let words: Vec<&str> = fact(&run, "time").split(' ').collect();
     let seconds: f64 = words[1].parse().unwrap();
-    assert!(
-        words[0] == "about" && words[2] == "s" && seconds > 0.0,
-        "{run:?}"
-    );
+    assert!(words[0] == "about" && words[2] == "s" && seconds > 0.0, "{run:?}");
 }

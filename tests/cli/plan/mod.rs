@@ -58,10 +58,7 @@ fn memory_mib(run: &Run, format: &str) -> usize {
 fn the_options_of_a_map_change_its_estimate() {
     let place = Place::with(SCENE);
     let all = bytes(&plan_with(&place, &[]), "EXR file");
-    let run = plan_with(
-        &place,
-        &["--channels", "regime", "--engine", "cpu", "--format", "exr"],
-    );
+    let run = plan_with(&place, &["--channels", "regime", "--engine", "cpu", "--format", "exr"]);
     assert!(bytes(&run, "EXR file") < 0.2 * all, "{run:?}");
     assert_eq!(fact(&run, "engine"), "cpu f64: selected by --engine");
     assert!(!run.out.contains("GPU"), "{run:?}");
@@ -83,9 +80,7 @@ fn standard_input_and_refused_scenes() {
     place
         .run(&["plan", "scene.toml"])
         .assert_refused(&["whisker.length_mm = -20: must be between"]);
-    place
-        .run(&["plan", "nowhere.toml"])
-        .assert_refused(&["nowhere.toml: cannot be read"]);
+    place.run(&["plan", "nowhere.toml"]).assert_refused(&["nowhere.toml: cannot be read"]);
     let large = STRAIGHT.replace("count = 8", "count = 60000");
     let large = large.replace("[5.0, 10.0]", "{ from = 2, to = 20, count = 4000 }");
     place.write("large.toml", &large);

@@ -6,9 +6,7 @@ use crate::cli::{Place, Run};
 /// Returns the lines of shards, as words.
 fn shards(run: &Run) -> Vec<Vec<&str>> {
     let lines = run.out.lines().filter(|line| line.starts_with("shard"));
-    lines
-        .map(|line| line.split_whitespace().collect())
-        .collect()
+    lines.map(|line| line.split_whitespace().collect()).collect()
 }
 
 /// Eight blocks of three whiskers each.
@@ -29,27 +27,15 @@ fn shards_have_their_part_of_cells_hours_and_bytes() {
     let parts = 2.0 * hours(&lines[0]) + hours(&lines[1]);
     assert!((hours(&sum) / parts - 1.0).abs() < 0.06, "{run:?}");
     let chosen = plan_with(&place, &["--shards", "3", "--engine", "spectral"]);
-    assert_eq!(
-        fact(&chosen, "engine"),
-        "spectral f64: selected by --engine"
-    );
-    assert_eq!(
-        lines[0][..6],
-        ["shards", "0-1", "3", "blocks,", "36864", "cells:"]
-    );
-    assert_eq!(
-        lines[1][..6],
-        ["shard", "2", "2", "blocks,", "24576", "cells:"]
-    );
+    assert_eq!(fact(&chosen, "engine"), "spectral f64: selected by --engine");
+    assert_eq!(lines[0][..6], ["shards", "0-1", "3", "blocks,", "36864", "cells:"]);
+    assert_eq!(lines[1][..6], ["shard", "2", "2", "blocks,", "24576", "cells:"]);
     for line in &lines {
         let hours: f64 = line[7].parse().unwrap();
         assert!(line[8] == "CPU-hours," && hours > 0.0, "{run:?}");
     }
     assert!(!run.out.contains("EXR file"), "{run:?}");
-    let one = plan_with(
-        &place,
-        &["--shard", "2/3", "--format", "zarr", "--threads", "1"],
-    );
+    let one = plan_with(&place, &["--shard", "2/3", "--format", "zarr", "--threads", "1"]);
     assert_eq!(shards(&one)[0][..6], lines[1][..6]);
     assert!(!one.out.contains("\nsum "), "{one:?}");
     assert!(fact(&one, "time").contains(" on 1 thread, "), "{one:?}");

@@ -33,10 +33,7 @@ fn the_size_of_files_is_estimated() {
         let ratio = foretold / found as f64;
         assert!((0.9..1.1).contains(&ratio), "{format}: {foretold}, {found}");
     }
-    place.write(
-        "scene.toml",
-        &format!("{sweep}{axes}pole_radius_mm = [0.1, 0.2]\n"),
-    );
+    place.write("scene.toml", &format!("{sweep}{axes}pole_radius_mm = [0.1, 0.2]\n"));
     let run = plan(&place);
     assert!(!run.out.contains("EXR file"), "{run:?}");
 }
@@ -77,9 +74,7 @@ fn a_large_sweep_is_never_held() {
         let limited = format!("ulimit -v {}; {command}", 8 << 20);
         let mut shell = std::process::Command::new("sh");
         let program = env!("CARGO_BIN_EXE_whiskmap");
-        let shell = shell
-            .args(["-c", &limited, program])
-            .current_dir(place.path(""));
+        let shell = shell.args(["-c", &limited, program]).current_dir(place.path(""));
         Run::of(&shell.output().unwrap())
     };
     let run = bounded("\"$0\" plan scene.toml");

@@ -22,9 +22,7 @@ tests! {
 /// There is no driver.
 pub fn real_driver() -> Result<String, String> {
     let folders = ["/usr/share/vulkan/icd.d", "/etc/vulkan/icd.d"];
-    let files = folders
-        .iter()
-        .filter_map(|folder| fs::read_dir(folder).ok());
+    let files = folders.iter().filter_map(|folder| fs::read_dir(folder).ok());
     let manifests = files.flatten().map(|file| file.unwrap().path());
     let manifest = manifests.min_by_key(|path| !path.to_string_lossy().contains("lvp"));
     let manifest = manifest.ok_or_else(|| format!("no Vulkan driver in {folders:?}"))?;
@@ -46,10 +44,7 @@ impl Place {
         let library = folder.path().join("libfaulty.so");
         Command::new("rustc")
             .args(["--edition", "2024", "--crate-type", "cdylib", "-o"])
-            .args([
-                &library,
-                &shipped::root().join("tests/machine/faults/icd.rs"),
-            ])
+            .args([&library, &shipped::root().join("tests/machine/faults/icd.rs")])
             .assert()
             .success();
         let manifest = serde_json::json!({
@@ -59,10 +54,7 @@ impl Place {
         fs::write(folder.path().join("icd.json"), manifest.to_string()).unwrap();
         let text = cone(2).to_toml().replace("count = 512", "count = 128");
         fs::write(folder.path().join("scene.toml"), text).unwrap();
-        Self {
-            folder,
-            real_driver,
-        }
+        Self { folder, real_driver }
     }
 
     /// Runs `map` with this engine on the driver with this fault.
@@ -138,18 +130,13 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
         let [out, err] = [&output.stdout, &output.stderr].map(|s| String::from_utf8_lossy(s));
         assert!(output.status.success(), "{fault}: {output:?}");
         assert!(!err.contains("panicked"), "{fault}: {err}");
-        let warning = err
-            .lines()
-            .find(|line| line.starts_with("warning: GPU: device lost"));
+        let warning = err.lines().find(|line| line.starts_with("warning: GPU: device lost"));
         assert!(warning.is_some(), "{fault}: {err}");
         let line = format!("{all:>12}  solved by the CPU in f64 after the engine had failed");
         assert!(out.contains(&line), "{fault}: {out}");
 
         let map = place.stored();
-        let failed = EngineCells {
-            on_cpu_instead: all,
-            ..EngineCells::default()
-        };
+        let failed = EngineCells { on_cpu_instead: all, ..EngineCells::default() };
         assert_eq!(map.counts.engine_cells, failed, "{fault}");
         assert_eq!(map.attribute("engine").unwrap(), "gpu f32");
         assert!(verdicts(&map) == wanted, "{fault}");
@@ -159,11 +146,7 @@ fn the_map_is_completed_whatever_fails_while_it_runs() {
 
 fn a_gpu_that_was_asked_for_and_cannot_start_is_an_error() {
     let place = Place::new();
-    for fault in [
-        "vkCreateDevice 0 -3",
-        "vkCreateBuffer 0 -2",
-        "vkCreateShaderModule 0 -1",
-    ] {
+    for fault in ["vkCreateDevice 0 -3", "vkCreateBuffer 0 -2", "vkCreateShaderModule 0 -1"] {
         let output = place.map("gpu", fault);
         let err = String::from_utf8_lossy(&output.stderr);
         assert_eq!(output.status.code(), Some(1), "{fault}: {err}");

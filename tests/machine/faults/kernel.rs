@@ -60,10 +60,7 @@ fn numbers_that_are_none_are_refined_in_f64_and_counted(precision: Precision) {
     for (none, part) in [
         ("wrong.numbers[8] = nan;", 1.0),
         ("wrong.residual = infinite;", 1.0),
-        (
-            "if id % 7u == 0u { wrong.numbers[0] = infinite; }",
-            1.0 / 7.0,
-        ),
+        ("if id % 7u == 0u { wrong.numbers[0] = infinite; }", 1.0 / 7.0),
     ] {
         let mut gpu = spoilt(precision, &format!("{none} write_cell(id, wrong);"));
         let (summary, panels) = compute(&scene, Some(&mut gpu));
@@ -90,18 +87,8 @@ fn a_kernel_that_does_nothing_is_noticed() {
     ] {
         let mut gpu = spoilt(Precision::F32, writes);
         let (summary, panels) = compute(&scene, Some(&mut gpu));
-        let EngineCells {
-            solved,
-            not_finite,
-            without_row,
-            ..
-        } = summary.engine_cells;
-        let only = EngineCells {
-            solved,
-            not_finite,
-            without_row,
-            ..EngineCells::default()
-        };
+        let EngineCells { solved, not_finite, without_row, .. } = summary.engine_cells;
+        let only = EngineCells { solved, not_finite, without_row, ..EngineCells::default() };
         // The host evaluates cells near touch.
         assert!(not_finite > 1000 && solved * 8 < not_finite);
         assert_eq!(summary.engine_cells, only);
@@ -114,16 +101,10 @@ fn a_kernel_that_does_nothing_is_noticed() {
 fn assert_caught(scene: &Scene, gpu: &mut Gpu) {
     let (summary, panels) = at_once(scene, gpu);
     let audit = summary.audit;
-    let failed = EngineError::FailedAudit {
-        differing: audit.differing,
-        cells: audit.cells,
-    };
+    let failed = EngineError::FailedAudit { differing: audit.differing, cells: audit.cells };
     let failure = summary.engine_failure.unwrap();
     assert_eq!(failure.to_string(), failed.to_string());
-    assert!(
-        audit.differing > 0 && audit.turned_over > audit.cells,
-        "{audit:?}"
-    );
+    assert!(audit.differing > 0 && audit.turned_over > audit.cells, "{audit:?}");
     let on_cpu_instead = summary.engine_cells.on_cpu_instead;
     assert_eq!(all_cells(&summary.engine_cells), on_cpu_instead);
     assert_identical(&compute(scene, None).1, &panels);
@@ -172,10 +153,7 @@ fn a_kernel_that_is_wrong_in_one_cell_of_a_thousand_is_caught() {
 
 fn a_kernel_that_the_driver_refuses_leaves_all_to_the_cpu() {
     let scene = cone(128);
-    for (shader, why) in [
-        ("fn solve_cells() {", "expected"),
-        ("fn other() {}", "solve_cells"),
-    ] {
+    for (shader, why) in [("fn solve_cells() {", "expected"), ("fn other() {}", "solve_cells")] {
         let mut gpu = open_with(Precision::F32, shader.to_owned());
         let (summary, panels) = compute(&scene, Some(&mut gpu));
         let failure = summary.engine_failure.unwrap().to_string();

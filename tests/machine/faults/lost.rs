@@ -43,15 +43,8 @@ fn lost_between_two_calls() {
         let gpu = open(Precision::F32);
         let mut engine = sabotaged(gpu, call, wgpu::Device::destroy);
         let (summary, panels) = compute_as(&scene, &plan, Some(&mut engine));
-        assert_eq!(
-            engine.calls,
-            call + 1,
-            "a lost device gets no further batch"
-        );
-        assert!(matches!(
-            summary.engine_failure,
-            Some(EngineError::Device(_))
-        ));
+        assert_eq!(engine.calls, call + 1, "a lost device gets no further batch");
+        assert!(matches!(summary.engine_failure, Some(EngineError::Device(_))));
         let cells = summary.engine_cells;
         assert_eq!(cells.solved == 0, call == 0);
         assert!(cells.on_cpu_instead > 0);
@@ -93,10 +86,7 @@ fn lost_within_a_call() {
     let all = sound_cells(&scene, &Plan::new(&scene).unwrap());
     // The first submissions have 4096 cells, and each is looked for more than once.
     assert!(all > 4 * 8192, "{all}");
-    let failed = EngineCells {
-        on_cpu_instead: all,
-        ..EngineCells::default()
-    };
+    let failed = EngineCells { on_cpu_instead: all, ..EngineCells::default() };
     let (_, cpu) = compute(&scene, None);
     for looks in 0..4 {
         let gpu = open(Precision::F32);

@@ -60,11 +60,7 @@ pub fn run(args: &BenchArgs, files: &mut Files) -> Result<(), Failure> {
     let json = args.json.as_deref();
     let output = json.map(|path| files.output("--json", path)).transpose()?;
     let picture = args.picture.open(files)?;
-    let effort = if args.quick {
-        Effort::QUICK
-    } else {
-        Effort::FULL
-    };
+    let effort = if args.quick { Effort::QUICK } else { Effort::FULL };
     let watched = std::io::stderr().is_terminal();
     let report = bench::run(&scene, effort, &mut |next| {
         if watched {

@@ -37,20 +37,13 @@ fn plot(rows: &[Measurement], peers: Option<&Peers>) -> Plot {
             let name = format!("{engine}, {}", rows[0].rung.integrator);
             plot.lines.push(Line::new(points, ink, stroke).named(name));
         }
-        plot.dots
-            .extend(rows.iter().filter_map(|row| dot(row, ink, rows.len() == 1)));
+        plot.dots.extend(rows.iter().filter_map(|row| dot(row, ink, rows.len() == 1)));
     }
     for peer in peers.iter().flat_map(|peers| &peers.programs) {
-        plot.notes
-            .extend(peer.points.first().map(|at| Note::text(*at, peer.name)));
-        let dots = peer.points.iter().map(|at| Dot {
-            at: *at,
-            ink: Ink::Grey,
-            ..Dot::default()
-        });
+        plot.notes.extend(peer.points.first().map(|at| Note::text(*at, peer.name)));
+        let dots = peer.points.iter().map(|at| Dot { at: *at, ink: Ink::Grey, ..Dot::default() });
         plot.dots.extend(dots);
-        plot.lines
-            .push(Line::new(peer.points.clone(), Ink::Grey, Stroke::Dashed));
+        plot.lines.push(Line::new(peer.points.clone(), Ink::Grey, Stroke::Dashed));
     }
     plot
 }
@@ -92,36 +85,19 @@ mod tests {
     use whiskmap::bench::{Errors, Measurement, Peer, Peers, Rung, Spread, StageTimes, Timing};
     use whiskmap::render::Ink;
 
-    const EXACT: Spread = Spread {
-        worst: 0.0,
-        p99: 0.0,
-    };
+    const EXACT: Spread = Spread { worst: 0.0, p99: 0.0 };
 
     fn row(engine: &str, is_noisy: bool) -> Measurement {
         Measurement {
             engine: engine.to_owned(),
             threads: None,
-            rung: Rung {
-                integrator: "nystrom8",
-                steps: 10,
-            },
-            seconds: Timing {
-                median: 1.0,
-                fastest: 1.0,
-                slowest: 1.0,
-                spread: 0.0,
-                is_noisy,
-            },
+            rung: Rung { integrator: "nystrom8", steps: 10 },
+            seconds: Timing { median: 1.0, fastest: 1.0, slowest: 1.0, spread: 0.0, is_noisy },
             stages_ms: StageTimes::new(),
             us_per_state: 1.0,
             states_per_s: 1.0,
             trajectories_per_s: Some(1.0),
-            errors: Errors {
-                states: 1,
-                angle_deg: EXACT,
-                arc_length: EXACT,
-                force: EXACT,
-            },
+            errors: Errors { states: 1, angle_deg: EXACT, arc_length: EXACT, force: EXACT },
             pareto: false,
         }
     }
@@ -132,10 +108,7 @@ mod tests {
         let inks = [Ink::Grey, Ink::Blue, Ink::Black, Ink::Black];
         let rows = engines.map(|engine| [true, false].map(|noisy| row(engine, noisy)));
         let plot = plot(&rows.concat(), None);
-        assert_eq!(
-            plot.lines.iter().map(|line| line.ink).collect::<Vec<_>>(),
-            inks
-        );
+        assert_eq!(plot.lines.iter().map(|line| line.ink).collect::<Vec<_>>(), inks);
         let dots = plot.dots.iter().map(|dot| (dot.ink, dot.open));
         assert_eq!(dots.collect::<Vec<_>>(), inks.map(|ink| (ink, true)));
     }
@@ -144,10 +117,7 @@ mod tests {
     fn a_single_row_and_each_peer_have_a_dot_and_a_name() {
         let peers = Peers {
             machine: "M".to_owned(),
-            programs: vec![Peer {
-                name: "AUTO-07p",
-                points: vec![[300.0, 1e-9], [500.0, 1e-10]],
-            }],
+            programs: vec![Peer { name: "AUTO-07p", points: vec![[300.0, 1e-9], [500.0, 1e-10]] }],
         };
         let plot = plot(&[row("gpu f32", false)], Some(&peers));
         assert_eq!(plot.dots.len(), 3);

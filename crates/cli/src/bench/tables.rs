@@ -10,11 +10,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
     writeln!(out, "{}: {} states\n", report.scene, report.states)?;
     for engine in &report.engines {
         let name = named(&engine.name, engine.threads);
-        writeln!(
-            out,
-            "{name:20} first result after {:.1e} s",
-            engine.first_result_s
-        )?;
+        writeln!(out, "{name:20} first result after {:.1e} s", engine.first_result_s)?;
         if engine.threads.is_none() {
             writeln!(out, "{:20} {}", "", engine.adapter)?;
         }
@@ -47,10 +43,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
     expansions(&mut out, report)?;
     let staged = || report.rows.iter().filter(|row| row.threads.is_none());
     if staged().next().is_some() {
-        writeln!(
-            out,
-            "\nms              steps              upload dispatch  waiting readback"
-        )?;
+        writeln!(out, "\nms              steps              upload dispatch  waiting readback")?;
     }
     for row in staged() {
         let stages = &row.stages_ms;
@@ -65,10 +58,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
             stages["readback"]
         )?;
     }
-    writeln!(
-        out,
-        "\ntrajectories, with transfers      million/s spread   pole off, lengths"
-    )?;
+    writeln!(out, "\ntrajectories, with transfers      million/s spread   pole off, lengths")?;
     for row in &report.trajectories {
         writeln!(
             out,
@@ -79,10 +69,7 @@ pub fn tables(report: &Report) -> io::Result<()> {
             error(row.apart)
         )?;
     }
-    writeln!(
-        out,
-        "\ndetachments, all threads    us a point spread   angle, deg: worst    99 %"
-    )?;
+    writeln!(out, "\ndetachments, all threads    us a point spread   angle, deg: worst    99 %")?;
     for row in &report.detachments {
         writeln!(
             out,
@@ -118,9 +105,7 @@ fn expansions(out: &mut impl Write, report: &Report) -> io::Result<()> {
         "\nexpansions, one thread\n  bound  states  certified  ms a side spread us a state  trajectories pays from"
     )?;
     for expansions in &report.expansions {
-        let from = expansions
-            .pays_from
-            .map_or_else(|| "-".to_owned(), |from| format!("{from:.0}"));
+        let from = expansions.pays_from.map_or_else(|| "-".to_owned(), |from| format!("{from:.0}"));
         writeln!(
             out,
             "{:7.0e} {:7} {:9.2}% {:10.2} {} {:11.3} {:13.3} {from:>9}",
@@ -203,11 +188,7 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
 
 /// Formats a largest error with one digit, and an infinite error, of a state that was not found, as `-`.
 fn error(largest: f64) -> String {
-    if largest.is_finite() {
-        format!("{largest:.0e}")
-    } else {
-        "-".to_owned()
-    }
+    if largest.is_finite() { format!("{largest:.0e}") } else { "-".to_owned() }
 }
 
 /// Formats the spread of a timing in percent, or as a multiple of the median from 10 times on; `!` marks a noisy one.

@@ -73,14 +73,8 @@ const TABLES: &[(&str, &[(&str, &str)])] = &[
     ("Columns with --data", ComparedPoint::COLUMNS),
     ("Columns with --samples", EndSpread::COLUMNS),
     ("More columns with --largest", LargestSpread::COLUMNS),
-    (
-        "More columns with --largest and whisker.yield_strain",
-        YieldMark::COLUMNS,
-    ),
-    (
-        "More columns with --data and --samples",
-        PointSpread::COLUMNS,
-    ),
+    ("More columns with --largest and whisker.yield_strain", YieldMark::COLUMNS),
+    ("More columns with --data and --samples", PointSpread::COLUMNS),
 ];
 
 #[derive(Debug, Args)]
@@ -220,11 +214,7 @@ fn detachments(
     let at_once = trace::whiskers_at_once(distances.len());
     for group in scene.whisker_groups(at_once) {
         let row = |DetachmentDerivatives { end, by }, mark: Option<PushMark>| {
-            let columns = DerivativeColumns {
-                variables,
-                by,
-                first: 0,
-            };
+            let columns = DerivativeColumns { variables, by, first: 0 };
             Marked((end, columns), mark)
         };
         let ends = |sides: &[SweptSide]| {
@@ -239,8 +229,7 @@ fn detachments(
                     },
                 );
                 let rows = found.into_iter().zip(marks);
-                rows.map(|(end, mark)| row(end, mark.or(unmarked)))
-                    .collect()
+                rows.map(|(end, mark)| row(end, mark.or(unmarked))).collect()
             };
             sides.iter().zip(found).map(of_side).collect()
         };

@@ -31,11 +31,7 @@ const NAMED: usize = 5;
 pub fn plot_title(scene: &Scene) -> String {
     match scene.refused().count() {
         0 => scene.title.clone(),
-        count => format!(
-            "{} ({count} of {} rows have no whisker)",
-            scene.title,
-            scene.table.len()
-        ),
+        count => format!("{} ({count} of {} rows have no whisker)", scene.title, scene.table.len()),
     }
 }
 
@@ -48,21 +44,16 @@ pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot
         coordinates.nth(index).map(|(_, value)| value)
     };
     let axes = scene.grid.sweep.iter();
-    let coloured = axes
-        .enumerate()
-        .find(|(_, axis)| axis.values.len() > 1)
-        .map(|(index, axis)| {
-            // A row without a whisker has no curve, so no colour and no name.
-            let drawn = whiskers.iter().map(|swept| coordinate(swept, index));
-            let drawn: Vec<Option<Coordinate>> = drawn.collect();
-            let values = axis.coordinates().map(Some);
-            let values = values.filter(|value| drawn.contains(value));
-            (index, axis, values.collect::<Vec<_>>())
-        });
-    let drawn: Vec<(f64, Vec<Detachment>)> = whiskers
-        .par_iter()
-        .map(|swept| detachments(scene, resolution, swept))
-        .collect();
+    let coloured = axes.enumerate().find(|(_, axis)| axis.values.len() > 1).map(|(index, axis)| {
+        // A row without a whisker has no curve, so no colour and no name.
+        let drawn = whiskers.iter().map(|swept| coordinate(swept, index));
+        let drawn: Vec<Option<Coordinate>> = drawn.collect();
+        let values = axis.coordinates().map(Some);
+        let values = values.filter(|value| drawn.contains(value));
+        (index, axis, values.collect::<Vec<_>>())
+    });
+    let drawn: Vec<(f64, Vec<Detachment>)> =
+        whiskers.par_iter().map(|swept| detachments(scene, resolution, swept)).collect();
     let looks = whiskers.iter().map(|swept| {
         let Some((index, axis, values)) = &coloured else {
             return (None, String::new());
@@ -111,10 +102,7 @@ fn detachments(
     let SweptWhisker { whisker, pole, .. } = swept;
     let reach_mm = trace::reach_mm(whisker, pole, Side::Cb);
     let grid = scene.grid.distance_mm.iter().copied();
-    let mut distances: Vec<f64> = grid
-        .clone()
-        .filter(|distance| *distance < reach_mm)
-        .collect();
+    let mut distances: Vec<f64> = grid.clone().filter(|distance| *distance < reach_mm).collect();
     if grid.last() >= Some(reach_mm) {
         let last = distances.last().copied().unwrap_or_default();
         let near = |step: usize| {
@@ -161,19 +149,14 @@ impl CurveColumn {
     /// Returns the horizontal axis of the column in plots, in the column's unit.
     pub const fn axis(self) -> CurveAxis {
         match self {
-            Self::PushAngleDeg => CurveAxis {
-                label: END_PUSH,
-                value: |end| end.push_angle_deg,
-            },
+            Self::PushAngleDeg => CurveAxis { label: END_PUSH, value: |end| end.push_angle_deg },
             // The sign keeps the sides apart.
-            Self::ForceUn => CurveAxis {
-                label: END_FORCE,
-                value: |end| Some(end.side.sign() * end.force_un?),
-            },
-            Self::BaseMomentNnm => CurveAxis {
-                label: END_MOMENT,
-                value: |end| end.base_moment_nnm,
-            },
+            Self::ForceUn => {
+                CurveAxis { label: END_FORCE, value: |end| Some(end.side.sign() * end.force_un?) }
+            }
+            Self::BaseMomentNnm => {
+                CurveAxis { label: END_MOMENT, value: |end| end.base_moment_nnm }
+            }
         }
     }
 
@@ -182,12 +165,7 @@ impl CurveColumn {
         match self {
             Self::PushAngleDeg => |row| [row.p5_deg, row.p25_deg, row.p75_deg, row.p95_deg],
             Self::ForceUn => |row| {
-                let ends = [
-                    row.force_p5_un,
-                    row.force_p25_un,
-                    row.force_p75_un,
-                    row.force_p95_un,
-                ];
+                let ends = [row.force_p5_un, row.force_p25_un, row.force_p75_un, row.force_p95_un];
                 ends.map(|end| Some(row.side.sign() * end?))
             },
             Self::BaseMomentNnm => |row| {
@@ -203,13 +181,7 @@ impl CurveColumn {
 }
 
 /// Vertical axis of a plot.
-pub const UPWARD: CurveAxis = CurveAxis {
-    label: DISTANCE,
-    value: |end| Some(end.distance_mm),
-};
+pub const UPWARD: CurveAxis = CurveAxis { label: DISTANCE, value: |end| Some(end.distance_mm) };
 
 /// Horizontal axis of plots of measured chord angles, in degrees.
-pub const CHORD: CurveAxis = CurveAxis {
-    label: END_CHORD,
-    value: |end| end.push_chord_deg,
-};
+pub const CHORD: CurveAxis = CurveAxis { label: END_CHORD, value: |end| end.push_chord_deg };

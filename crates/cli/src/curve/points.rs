@@ -22,11 +22,7 @@ pub fn compare(
     files: &mut Files,
 ) -> Result<(), Failure> {
     check_single(scene, "curve --data")?;
-    let SweptWhisker {
-        whisker,
-        pole,
-        place,
-    } = scene.first_whisker();
+    let SweptWhisker { whisker, pole, place } = scene.first_whisker();
     let points = data::read(path, &args.columns)?.at(&place)?;
     points.check_reach(&whisker, &pole)?;
     let measured_mm = points.points.iter().map(|point| point.distance_mm);
@@ -44,9 +40,7 @@ pub fn compare(
     let comparison = points.beside(&whisker, &pole);
     data::name_left_out(&points, &comparison);
     let rows = &comparison.rows;
-    let spread = draws
-        .as_ref()
-        .map(|draws| uncertainty::spread(draws, Resolution::FINE));
+    let spread = draws.as_ref().map(|draws| uncertainty::spread(draws, Resolution::FINE));
     match &spread {
         None => outputs.rows(rows)?,
         Some(spread) => outputs.rows(rows.iter().map(|row| (row, at_point(spread, row))))?,

@@ -73,10 +73,8 @@ pub fn unreached(variable: Variable, asked: &AskedTarget, design: &Design) -> St
         let most = (REACHED_DIGITS..ASKED_DIGITS).find(is_other);
         asked.text(value, most.unwrap_or(ASKED_DIGITS))
     };
-    let kinds = [
-        (DetachmentKind::SlipOff, "slips off"),
-        (DetachmentKind::PullOff, "is pulled off"),
-    ];
+    let kinds =
+        [(DetachmentKind::SlipOff, "slips off"), (DetachmentKind::PullOff, "is pulled off")];
     let ranges = kinds.iter().filter_map(|(kind, verb)| {
         let [low, high] = design.reached(*kind)?.map(number);
         let between = match goal.kind() {
@@ -112,9 +110,7 @@ pub fn undetermined(
     let spans = design.spans.iter().map(|[from, to]| {
         let is_own = |value: &f64| (from..=to).contains(&value);
         let own = scene_value.filter(is_own).map(number);
-        let own = own.map_or_else(String::new, |own| {
-            format!(", such as the scene's own {own},")
-        });
+        let own = own.map_or_else(String::new, |own| format!(", such as the scene's own {own},"));
         format!("between {} and {}{own}", number(*from), number(*to))
     });
     let spans: Vec<String> = spans.collect();
@@ -139,12 +135,7 @@ pub fn unreached_together(
     let listed = |values: &[f64], of: &dyn Fn(usize) -> String| {
         let parts = variables.iter().zip(values).enumerate();
         let parts = parts.map(|(i, (variable, value))| {
-            format!(
-                "{} {}{}",
-                variable.variable,
-                digits(rounded(*value, SOLUTION_DIGITS)),
-                of(i)
-            )
+            format!("{} {}{}", variable.variable, digits(rounded(*value, SOLUTION_DIGITS)), of(i))
         });
         parts.collect::<Vec<_>>().join(" and ")
     };

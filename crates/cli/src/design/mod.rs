@@ -131,11 +131,7 @@ fn plot(
 ) -> Result<(), Failure> {
     let range = found.shown();
     let ends = ends_between(scene, varied.clone(), target, range);
-    let near = Design {
-        range,
-        ends: ends.map_err(|why| refused(path, why))?,
-        ..found.clone()
-    };
+    let near = Design { range, ends: ends.map_err(|why| refused(path, why))?, ..found.clone() };
     let chart = chart(varied.variables[0].variable, target, &near);
     let title = heading(scene, varied, target.distance_mm);
     picture.chart(&Chart::single(title, chart))?;

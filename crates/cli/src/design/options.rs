@@ -35,22 +35,11 @@ pub fn variable(text: &str) -> Result<DesignVariable, String> {
         Some((name, limits)) => (name, Some(limits)),
         None => (text, None),
     };
-    let names = || {
-        Parameter::ALL
-            .map(Parameter::name)
-            .into_iter()
-            .chain(["distance_mm"])
-    };
-    let known = name
-        .parse()
-        .ok()
-        .filter(|variable| *variable != Variable::PushAngleDeg);
+    let names = || Parameter::ALL.map(Parameter::name).into_iter().chain(["distance_mm"]);
+    let known = name.parse().ok().filter(|variable| *variable != Variable::PushAngleDeg);
     let variable = known.ok_or_else(|| {
         let hint = Parameter::suggested(name).unwrap_or_else(|| did_you_mean(name, names()));
-        format!(
-            "must be one of {}{hint}",
-            names().collect::<Vec<_>>().join(", ")
-        )
+        format!("must be one of {}{hint}", names().collect::<Vec<_>>().join(", "))
     })?;
     let limits = limits.map(|limits| {
         let must = || format!("{name}: limits must be two growing values, such as {name}=1..2");
@@ -62,10 +51,7 @@ pub fn variable(text: &str) -> Result<DesignVariable, String> {
         let limits = [number(from)?, number(to)?];
         (limits[0] < limits[1]).then_some(limits).ok_or_else(must)
     });
-    Ok(DesignVariable {
-        variable,
-        limits: limits.transpose()?,
-    })
+    Ok(DesignVariable { variable, limits: limits.transpose()? })
 }
 
 /// Significant digits of a target in messages.
@@ -167,10 +153,8 @@ impl DesignArgs {
         let angle = given.iter().find(|(_, goal, _)| goal.kind().is_some());
         let of_angle = angle.map(|(.., asked)| Side::of_push(asked.value));
         let Some(side) = of_angle.or(self.side) else {
-            let why = format!(
-                "{}: needs --side cb or cf, or a push angle with its sign",
-                given[0].0
-            );
+            let why =
+                format!("{}: needs --side cb or cf, or a push angle with its sign", given[0].0);
             return Err(Failure::Input(why));
         };
         let other = match (self.side, side) {
@@ -185,12 +169,7 @@ impl DesignArgs {
         }
         let targets = given.into_iter().map(|(option, goal, asked)| AskedTarget {
             option,
-            target: DesignTarget {
-                distance_mm,
-                side,
-                goal,
-                value: asked.value,
-            },
+            target: DesignTarget { distance_mm, side, goal, value: asked.value },
             asked,
         });
         Ok(targets.collect())

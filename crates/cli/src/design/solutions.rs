@@ -26,23 +26,15 @@ impl<'a> Solutions<'a> {
         values: Vec<Vec<f64>>,
         most_digits: usize,
     ) -> Self {
-        let values = values
-            .into_iter()
-            .map(|exact| written(scene, varied, exact, most_digits));
-        Self {
-            values: values.collect(),
-            scene,
-            varied,
-            most_digits,
-        }
+        let values = values.into_iter().map(|exact| written(scene, varied, exact, most_digits));
+        Self { values: values.collect(), scene, varied, most_digits }
     }
 
     /// Returns the scene with the values of the solution that is nearest to the scene's own, as TOML.
     pub fn nearest_scene(&self) -> Result<String, Failure> {
         let variables = self.varied.variables.iter();
-        let current: Vec<f64> = variables
-            .filter_map(|variable| variable.variable.value(self.scene))
-            .collect();
+        let current: Vec<f64> =
+            variables.filter_map(|variable| variable.variable.value(self.scene)).collect();
         let apart = |values: &[f64]| {
             let pairs = values.iter().zip(&current);
             let parts = pairs
@@ -58,17 +50,12 @@ impl<'a> Solutions<'a> {
     /// Returns the numbers of the scene with the values of a solution. Instead of a taper, the scene gives the radius at the tip.
     fn changes(&self, values: &[f64]) -> Vec<(Parameter, f64)> {
         let mut changes = self.varied.changes(self.scene, values);
-        let base = changes
-            .iter()
-            .find(|(parameter, _)| *parameter == Parameter::BaseRadiusUm);
+        let base = changes.iter().find(|(parameter, _)| *parameter == Parameter::BaseRadiusUm);
         let base_radius_um = base.map_or(self.scene.whisker.base_radius_um, |(_, value)| *value);
         for change in &mut changes {
             if change.0 == Parameter::Taper {
                 let tip_radius_um = base_radius_um * (1.0 - change.1);
-                *change = (
-                    Parameter::TipRadiusUm,
-                    rounded(tip_radius_um, self.most_digits),
-                );
+                *change = (Parameter::TipRadiusUm, rounded(tip_radius_um, self.most_digits));
             }
         }
         changes

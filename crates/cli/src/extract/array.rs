@@ -20,23 +20,15 @@ pub fn array(
     let mut file = BufWriter::new(files.output("--output", path)?);
     for (number, whisker) in slice.whiskers().enumerate() {
         let (kind, bytes): (_, Vec<u8>) = match slice.read_panel(channel, whisker)? {
-            ChannelValues::F32(values) => (
-                "<f4",
-                values.into_iter().flat_map(f32::to_le_bytes).collect(),
-            ),
-            ChannelValues::U32(codes) => (
-                "<u4",
-                codes.into_iter().flat_map(u32::to_le_bytes).collect(),
-            ),
+            ChannelValues::F32(values) => {
+                ("<f4", values.into_iter().flat_map(f32::to_le_bytes).collect())
+            }
+            ChannelValues::U32(codes) => {
+                ("<u4", codes.into_iter().flat_map(u32::to_le_bytes).collect())
+            }
         };
-        let header = if number == 0 {
-            npy(kind, &slice.shape())
-        } else {
-            Vec::new()
-        };
-        let written = file
-            .write_all(&header)
-            .and_then(|()| file.write_all(&bytes));
+        let header = if number == 0 { npy(kind, &slice.shape()) } else { Vec::new() };
+        let written = file.write_all(&header).and_then(|()| file.write_all(&bytes));
         written.map_err(unwritten(path))?;
     }
     let output = file.into_inner().map_err(IntoInnerError::into_error);

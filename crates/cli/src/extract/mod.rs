@@ -81,9 +81,7 @@ fn map(
     path: &Path,
     files: &mut Files,
 ) -> Result<(), Failure> {
-    let missing = ["regime", "status"]
-        .into_iter()
-        .find(|name| !channels.contains(name));
+    let missing = ["regime", "status"].into_iter().find(|name| !channels.contains(name));
     if let Some(missing) = missing {
         let why = format!("a map needs the channel {missing}; name a .csv or .npy");
         return refuse(path, &why);
@@ -96,10 +94,7 @@ fn map(
         return refuse(path, &why);
     }
     let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
-    let scene = SceneData {
-        grid: slice.grid().clone(),
-        ..SceneData::clone(&scene)
-    };
+    let scene = SceneData { grid: slice.grid().clone(), ..SceneData::clone(&scene) };
     let about = origin.describe(&scene, Channels::those(|name| channels.contains(&name)));
     let mut writer = MapWriter::create(files.file("--output", path)?, &about)?;
     for whisker in 0..slice.grid().whisker_count() {
@@ -116,10 +111,7 @@ fn store(
     files: &mut Files,
 ) -> Result<(), Failure> {
     if !slice.channels().contains(&"regime") {
-        return refuse(
-            path,
-            "a store needs the channel regime; name a .csv or .npy",
-        );
+        return refuse(path, "a store needs the channel regime; name a .csv or .npy");
     }
     let (scene, origin) = (scene(slice)?, MapOrigin::of(slice)?);
     let chosen = Channels::those(|name| channels.contains(&name));

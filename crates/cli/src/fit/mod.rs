@@ -102,9 +102,7 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     let toml_output = toml_output.filter(|_| found.not_a_fit.is_none());
     let json = json_output.map(|output| (output, format!("{:#}\n", document(&found))));
     let estimates = found.estimates.iter();
-    let values: Vec<_> = estimates
-        .map(|estimate| (estimate.parameter, estimate.value))
-        .collect();
+    let values: Vec<_> = estimates.map(|estimate| (estimate.parameter, estimate.value)).collect();
     let toml = toml_output
         .map(|output| Ok::<_, Failure>((output, scene.to_toml_with(&values)?)))
         .transpose()?;
@@ -141,25 +139,15 @@ fn print(title: &str, fit: &Fit, outputs: Vec<(Output, String)>) -> Result<(), F
 
 /// Returns the fit as JSON, with parameters by name.
 fn document(fit: &Fit) -> Value {
-    let names = fit
-        .estimates
-        .iter()
-        .map(|estimate| estimate.parameter.name());
+    let names = fit.estimates.iter().map(|estimate| estimate.parameter.name());
     let keyed = |values: Vec<Value>| -> Map<String, Value> {
         names.clone().map(str::to_owned).zip(values).collect()
     };
     let estimates = fit.estimates.iter();
-    let values = estimates
-        .clone()
-        .map(|estimate| json!(estimate.value))
-        .collect();
-    let errors = estimates
-        .map(|estimate| json!(estimate.standard_error))
-        .collect();
+    let values = estimates.clone().map(|estimate| json!(estimate.value)).collect();
+    let errors = estimates.map(|estimate| json!(estimate.standard_error)).collect();
     let rows = fit.correlation.iter().map(|row| {
-        Value::Object(keyed(
-            row.iter().map(|correlation| json!(correlation)).collect(),
-        ))
+        Value::Object(keyed(row.iter().map(|correlation| json!(correlation)).collect()))
     });
     let comparison = &fit.comparison;
     let traced = fit.scene.traced().map(|shape| {

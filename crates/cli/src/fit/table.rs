@@ -95,11 +95,7 @@ pub fn table(title: &str, fit: &Fit) -> io::Result<()> {
                 )
             })
             .collect();
-        writeln!(
-            out,
-            "without these rows, values would move most: {}",
-            texts.join(", ")
-        )?;
+        writeln!(out, "without these rows, values would move most: {}", texts.join(", "))?;
     }
     Ok(())
 }

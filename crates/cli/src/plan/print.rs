@@ -39,10 +39,7 @@ pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
     )?;
     let distances = scene.grid.distance_mm.len();
     let pushes = counted(scene.grid.push_angle_deg.len(), "push angle");
-    let (rows, whiskers) = (
-        counted(distances, "distance"),
-        counted(plan.whiskers, "whisker"),
-    );
+    let (rows, whiskers) = (counted(distances, "distance"), counted(plan.whiskers, "whisker"));
     let (cells, steps) = (plan.cells, cost.steps_per_cell);
     writeln!(out, "cells         {cells}: {pushes} x {rows} x {whiskers}")?;
     let most = (steps + 1.0) * cells as f64;
@@ -60,14 +57,8 @@ pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
         print_gpu(&mut out, plan, distances)?;
     }
     let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
-    let (on, hours) = (
-        counted(threads, "thread"),
-        significant(cost.cpu_seconds / 3600.0),
-    );
-    writeln!(
-        out,
-        "time          about {seconds} s on {on}, {hours} CPU-hours, without the files"
-    )?;
+    let (on, hours) = (counted(threads, "thread"), significant(cost.cpu_seconds / 3600.0));
+    writeln!(out, "time          about {seconds} s on {on}, {hours} CPU-hours, without the files")?;
     for file in &estimate.files {
         let name = match file.format {
             MapFormat::Exr => "EXR file",

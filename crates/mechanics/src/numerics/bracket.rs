@@ -32,11 +32,7 @@ impl Bracket {
     /// Creates the bracket of two arguments. The argument with the smaller of the two `values` becomes [`Bracket::below`].
     #[must_use]
     pub fn new([a, b]: [f64; 2], values: [f64; 2]) -> Self {
-        let [below, above] = if values[0] <= values[1] {
-            [a, b]
-        } else {
-            [b, a]
-        };
+        let [below, above] = if values[0] <= values[1] { [a, b] } else { [b, a] };
         Self { below, above }
     }
 
@@ -71,11 +67,7 @@ impl Bracket {
     /// contains it, otherwise the middle.
     fn next(&mut self, x: f64, value: f64, proposed: f64) -> f64 {
         self.shrink(x, value);
-        if self.is_inside(proposed) {
-            proposed
-        } else {
-            self.middle()
-        }
+        if self.is_inside(proposed) { proposed } else { self.middle() }
     }
 
     /// Returns the root of the function `value` in the bracket by bisection, to the last digit, in the unit of the search.
@@ -127,19 +119,11 @@ impl Bracket {
         loop {
             let (value, proposed) = iterate(x);
             iterations += 1;
-            let next = if proposed == x {
-                x
-            } else {
-                self.next(x, value, proposed)
-            };
+            let next = if proposed == x { x } else { self.next(x, value, proposed) };
             let step = next - x;
             let is_last = next == proposed && step.abs() <= last_step(x);
             if is_last || next == x || iterations == MOST_ITERATIONS {
-                return Root {
-                    x: next,
-                    step,
-                    iterations,
-                };
+                return Root { x: next, step, iterations };
             }
             x = next;
         }
@@ -160,11 +144,7 @@ pub fn illinois(
         iterations += 1;
         let is_stuck = x == kept[0] || x == last[0] || iterations == MOST_ITERATIONS;
         if here.abs() <= tolerance || is_stuck {
-            return Some(Root {
-                x,
-                step: x - last[0],
-                iterations,
-            });
+            return Some(Root { x, step: x - last[0], iterations });
         }
         if (here < 0.0) == (last[1] < 0.0) {
             // An end that is kept twice counts half; otherwise it would never move.

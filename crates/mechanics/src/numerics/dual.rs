@@ -43,10 +43,7 @@ impl<T: Real> Add for Dual<T> {
 
     #[inline(always)]
     fn add(self, other: Self) -> Self {
-        Self {
-            value: self.value + other.value,
-            derivative: self.derivative + other.derivative,
-        }
+        Self { value: self.value + other.value, derivative: self.derivative + other.derivative }
     }
 }
 
@@ -55,10 +52,7 @@ impl<T: Real> Sub for Dual<T> {
 
     #[inline(always)]
     fn sub(self, other: Self) -> Self {
-        Self {
-            value: self.value - other.value,
-            derivative: self.derivative - other.derivative,
-        }
+        Self { value: self.value - other.value, derivative: self.derivative - other.derivative }
     }
 }
 
@@ -82,10 +76,7 @@ impl<T: Real> Div for Dual<T> {
     fn div(self, other: Self) -> Self {
         let inverse = T::of(1.0) / other.value;
         let value = self.value * inverse;
-        Self {
-            value,
-            derivative: (-value).mul_add(other.derivative, self.derivative) * inverse,
-        }
+        Self { value, derivative: (-value).mul_add(other.derivative, self.derivative) * inverse }
     }
 }
 
@@ -94,20 +85,14 @@ impl<T: Real> Neg for Dual<T> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            derivative: -self.derivative,
-        }
+        Self { value: -self.value, derivative: -self.derivative }
     }
 }
 
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn of(x: f64) -> Self {
-        Self {
-            value: T::of(x),
-            derivative: T::of(0.0),
-        }
+        Self { value: T::of(x), derivative: T::of(0.0) }
     }
 
     #[inline(always)]
@@ -125,9 +110,6 @@ impl<T: Real> Real for Dual<T> {
         let value = self.value.sqrt();
         // The smallest normal number changes no root but the root of 0.
         let slope = T::of(0.5) / (value + T::of(f64::MIN_POSITIVE));
-        Self {
-            value,
-            derivative: self.derivative * slope,
-        }
+        Self { value, derivative: self.derivative * slope }
     }
 }

@@ -46,10 +46,7 @@ impl ChebyshevGrid {
         let known = |j, k| if k < count { weight(j, k) } else { 0.0 };
         let group = |j, from: usize| std::array::from_fn(|lane| known(j, from + lane));
         let row = |j| std::array::from_fn(|index| group(j, index * WIDTH));
-        Self {
-            points: (0..count).map(point).collect(),
-            transform: (0..count).map(row).collect(),
-        }
+        Self { points: (0..count).map(point).collect(), transform: (0..count).map(row).collect() }
     }
 }
 
@@ -176,10 +173,7 @@ impl<const D: usize> Chebyshev<D> {
             let sum = combine(two, later, coefficients[function], latest);
             (later, latest) = (sum, later);
         }
-        let constant = self
-            .coefficients
-            .first()
-            .map_or(0.0, |first| first[function]);
+        let constant = self.coefficients.first().map_or(0.0, |first| first[function]);
         combine(T::of(1.0), later, constant, latest)
     }
 }

@@ -40,10 +40,7 @@ struct QuadratureNode {
 }
 
 const QUADRATURE_NODES: [[QuadratureNode; QUADRATURE.len()]; NODES + 1] = {
-    const NONE: QuadratureNode = QuadratureNode {
-        at: 0.0,
-        basis: [0.0; NODES],
-    };
+    const NONE: QuadratureNode = QuadratureNode { at: 0.0, basis: [0.0; NODES] };
     let mut nodes = [const { [NONE; QUADRATURE.len()] }; NODES + 1];
     let mut gap = 0;
     while gap <= NODES {

@@ -58,16 +58,9 @@ impl<const D: usize> Inverse<D> {
     pub fn new(functions: Chebyshev<D>, end: f64) -> Option<Self> {
         let values = Unit::detect().run(Table(&functions, end));
         let last = values[INTERVALS];
-        let start = |value: f64| InverseStart {
-            value,
-            root: (last - value).max(0.0).sqrt(),
-        };
+        let start = |value: f64| InverseStart { value, root: (last - value).max(0.0).sqrt() };
         let grows = values.windows(2).all(|pair| pair[0] < pair[1]);
-        grows.then(|| Self {
-            functions,
-            end,
-            starts: values.map(start),
-        })
+        grows.then(|| Self { functions, end, starts: values.map(start) })
     }
 
     /// Value of the first function at the end.
@@ -146,10 +139,7 @@ impl<const D: usize> SimdTask for Steps<'_, D> {
 
     #[inline(always)]
     fn run<T: Lanes>(self) -> InverseBlock<D> {
-        let mut block = InverseBlock {
-            places: [0.0; WIDTH],
-            values: [[0.0; WIDTH]; D],
-        };
+        let mut block = InverseBlock { places: [0.0; WIDTH], values: [[0.0; WIDTH]; D] };
         let lanes = |numbers: &[f64; WIDTH], from: usize| {
             let mut lanes = [0.0; WIDTH];
             lanes[..T::LANES].copy_from_slice(&numbers[from..from + T::LANES]);
@@ -260,10 +250,7 @@ mod tests {
 
     #[test]
     fn a_falling_function_has_no_inverse() {
-        let falling: Vec<[f64; 1]> = chebyshev_points(8)
-            .iter()
-            .map(|x| [x * (0.9 - x)])
-            .collect();
+        let falling: Vec<[f64; 1]> = chebyshev_points(8).iter().map(|x| [x * (0.9 - x)]).collect();
         assert!(Inverse::new(Chebyshev::through(&falling), 1.0).is_none());
     }
 }

@@ -42,16 +42,8 @@ impl<const N: usize> Polynomial<N> {
     /// `last_step`; the error is about its square.
     #[must_use]
     pub fn solve(&self, problem: &RootProblem, last_step: f64) -> f64 {
-        let RootProblem {
-            target,
-            near,
-            bracket,
-        } = *problem;
-        let start = if bracket.is_inside(near) {
-            near
-        } else {
-            bracket.middle()
-        };
+        let RootProblem { target, near, bracket } = *problem;
+        let start = if bracket.is_inside(near) { near } else { bracket.middle() };
         let iterate = |t| {
             let (value, slope) = self.at(t);
             (value - target, t - (value - target) / slope)
@@ -156,6 +148,5 @@ fn divide<const F: usize>(
 /// Returns the first of the `around` nodes that surround the interval from `at` to `at + 1`, where there are `count` nodes in all.
 #[must_use]
 pub fn stencil(at: usize, around: usize, count: usize) -> usize {
-    at.saturating_sub(around / 2 - 1)
-        .min(count.saturating_sub(around))
+    at.saturating_sub(around / 2 - 1).min(count.saturating_sub(around))
 }

@@ -129,8 +129,5 @@ pub fn rotated_by_small<T: Real>([x, y]: [T; 2], angle: T) -> [T; 2] {
         }};
     }
     let (sin, versed) = (angle * sum!(0), square * sum!(1));
-    [
-        (-sin).mul_add(y, versed.mul_add(x, x)),
-        sin.mul_add(x, versed.mul_add(y, y)),
-    ]
+    [(-sin).mul_add(y, versed.mul_add(x, x)), sin.mul_add(x, versed.mul_add(y, y))]
 }

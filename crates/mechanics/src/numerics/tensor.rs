@@ -32,13 +32,9 @@ impl<const D: usize> ChebyshevTensor<D> {
             })
             .collect();
         let of = |power: usize| {
-            in_x.iter()
-                .map(move |expansion| expansion.coefficients[power])
-                .collect()
+            in_x.iter().map(move |expansion| expansion.coefficients[power]).collect()
         };
-        Self {
-            coefficients: (0..rows.len()).map(of).collect(),
-        }
+        Self { coefficients: (0..rows.len()).map(of).collect() }
     }
 
     /// Returns the sizes of the last coefficients of each function in `x`, and in `y`: `[variable][group][function]`. They are the
@@ -52,19 +48,14 @@ impl<const D: usize> ChebyshevTensor<D> {
                 .map(|in_y| in_y.get(power).copied().unwrap_or([0.0; D]))
                 .collect(),
         };
-        let in_y = |terms: &Vec<[f64; D]>| Chebyshev {
-            coefficients: terms.clone(),
-        };
+        let in_y = |terms: &Vec<[f64; D]>| Chebyshev { coefficients: terms.clone() };
         let sum = |sum: [[f64; D]; 2], expansion: Chebyshev<D>| {
             let tails = expansion.tails();
             std::array::from_fn(|group| std::array::from_fn(|i| sum[group][i] + tails[group][i]))
         };
         let zero = [[0.0; D]; 2];
         let longest = self.coefficients.iter().map(Vec::len).max().unwrap_or(0);
-        [
-            (0..longest).map(in_x).fold(zero, sum),
-            self.coefficients.iter().map(in_y).fold(zero, sum),
-        ]
+        [(0..longest).map(in_x).fold(zero, sum), self.coefficients.iter().map(in_y).fold(zero, sum)]
     }
 
     /// Removes coefficients for which `is_rounding` is true, from the last polynomial of `y` on, for each polynomial of `x`.
@@ -93,14 +84,8 @@ impl<const D: usize> ChebyshevTensor<D> {
             for ([x, y], (into_x, into_y)) in places.iter().zip(xs.iter_mut().zip(&mut ys)) {
                 (*into_x, *into_y) = (*x, *y);
             }
-            let terms = unit.run(Contraction {
-                coefficients: &self.coefficients,
-                places: &ys,
-            });
-            let values: [LaneNumbers; N] = unit.run(AtEach {
-                terms: &terms,
-                places: &xs,
-            });
+            let terms = unit.run(Contraction { coefficients: &self.coefficients, places: &ys });
+            let values: [LaneNumbers; N] = unit.run(AtEach { terms: &terms, places: &xs });
             (0..places.len()).map(move |lane| values.map(|lanes| lanes[lane]))
         });
         blocks.collect()
@@ -115,9 +100,7 @@ impl<const D: usize> ChebyshevTensor<D> {
             let terms = terms.map(|term| [term.map_or(0.0, |term| term[function])]);
             terms.collect()
         };
-        ChebyshevTensor {
-            coefficients: (0..length).map(of).collect(),
-        }
+        ChebyshevTensor { coefficients: (0..length).map(of).collect() }
     }
 
     /// Returns the columns of the tensor at each `y` of `places`.
@@ -128,23 +111,11 @@ impl<const D: usize> ChebyshevTensor<D> {
         let blocks = places.chunks(WIDTH).map(|places| {
             let mut at = [places[0]; WIDTH];
             at[..places.len()].copy_from_slice(places);
-            let terms = unit.run(Contraction {
-                coefficients: &self.coefficients,
-                places: &at,
-            });
-            let starts = unit.run(AtPlaces {
-                terms: &terms,
-                places: &even,
-            });
-            ColumnBlock {
-                count: places.len(),
-                terms,
-                starts,
-            }
+            let terms = unit.run(Contraction { coefficients: &self.coefficients, places: &at });
+            let starts = unit.run(AtPlaces { terms: &terms, places: &even });
+            ColumnBlock { count: places.len(), terms, starts }
         });
-        TensorColumns {
-            blocks: blocks.collect(),
-        }
+        TensorColumns { blocks: blocks.collect() }
     }
 }
 
@@ -250,12 +221,7 @@ impl<const D: usize> TensorColumns<D> {
             for (lane, start) in starts[..block.count].iter_mut().enumerate().skip(1) {
                 *start = block.start(lane, level)?;
             }
-            let found = unit.run(LevelPoints {
-                block,
-                along,
-                level,
-                starts: &starts,
-            });
+            let found = unit.run(LevelPoints { block, along, level, starts: &starts });
             let mut first = found.values[0][..block.count].iter();
             let is_on_level = first.all(|value| (value - level).abs() <= ON_LEVEL);
             is_on_level.then_some(found)
@@ -271,10 +237,7 @@ impl<const D: usize> TensorColumns<D> {
         let blocks = self.blocks.iter().zip(ends);
         let quotients = blocks.map(|(block, ends)| {
             let terms = unit.run(QuotientTerms { block, ends });
-            unit.run(AtPlaces {
-                terms: &terms,
-                places,
-            })
+            unit.run(AtPlaces { terms: &terms, places })
         });
         quotients.collect()
     }
@@ -435,11 +398,8 @@ impl<const D: usize, const L: usize> SimdTask for LevelPoints<'_, D, L> {
     #[inline(always)]
     fn run<T: Lanes>(self) -> Self::Output {
         let ColumnBlock { count, terms, .. } = self.block;
-        let mut found = LevelBlock {
-            count: *count,
-            values: [[0.0; WIDTH]; D],
-            along: [[0.0; WIDTH]; L],
-        };
+        let mut found =
+            LevelBlock { count: *count, values: [[0.0; WIDTH]; D], along: [[0.0; WIDTH]; L] };
         for from in (0..*count).step_by(T::LANES) {
             let mut x: T = pack(self.starts, from);
             for _ in 0..STEPS {
@@ -511,12 +471,7 @@ mod tests {
         // The line leaves the square at the last columns.
         assert!(columns.level(0.15, &along).is_none() && columns.level(1.01, &along).is_none());
         let [in_x, in_y] = tensor.tails();
-        assert!(
-            [in_x[0], in_y[0]]
-                .as_flattened()
-                .iter()
-                .all(|tail| *tail < 1e-12)
-        );
+        assert!([in_x[0], in_y[0]].as_flattened().iter().all(|tail| *tail < 1e-12));
     }
 
     /// Along columns of an expansion with exchanged variables, quotients with places of each column equal the quotients of its functions.
@@ -547,9 +502,7 @@ mod tests {
     #[test]
     fn a_level_line_is_where_the_function_grows() {
         let tensor = tensor(|x, y| [x * (0.9 - x) + y, x, 0.0]);
-        let along = Chebyshev {
-            coefficients: vec![[1.0]],
-        };
+        let along = Chebyshev { coefficients: vec![[1.0]] };
         let columns = tensor.columns(&[0.5]);
         let found = columns.level(0.64, &along).unwrap();
         assert!((found[0].values[1][0] - 0.2).abs() < 1e-12);

@@ -21,11 +21,7 @@ impl CurvaturePolynomial {
     /// Creates the polynomial with these coefficients of Legendre polynomials, `[degree]`, in radians per whisker length.
     #[must_use]
     pub fn new(legendre: [f64; CURVATURE_TERMS]) -> Self {
-        let mut polynomial = Self {
-            legendre,
-            centred: centred(&legendre),
-            sharpest: 0.0,
-        };
+        let mut polynomial = Self { legendre, centred: centred(&legendre), sharpest: 0.0 };
         let places = (0..=PLACES).map(|i| polynomial.at(f64::from(i) / f64::from(PLACES)).abs());
         polynomial.sharpest = places.fold(0.0, f64::max);
         polynomial

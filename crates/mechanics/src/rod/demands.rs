@@ -53,10 +53,7 @@ impl Demands {
                     *largest = largest.max(share);
                 }
             }
-            let ways = profile
-                .widths
-                .iter()
-                .map(|width| (width / nearest).min(1.0));
+            let ways = profile.widths.iter().map(|width| (width / nearest).min(1.0));
             let demand = |((share, way), change): ((&f64, f64), &f64)| Demand {
                 bending: (share * way).sqrt().max(0.5 * share) as f32,
                 roughness: (change * libm::pow(share * way, 0.2)) as f32,

@@ -33,10 +33,6 @@ impl RodDerivative {
     #[must_use]
     pub fn piece(&self, k: usize) -> Piece {
         let piece = self.pieces.as_ref().and_then(|pieces| pieces.get(k));
-        piece.copied().unwrap_or(Piece {
-            from: 0.0,
-            tau: 0.0,
-            cubic: [0.0; 4],
-        })
+        piece.copied().unwrap_or(Piece { from: 0.0, tau: 0.0, cubic: [0.0; 4] })
     }
 }

@@ -41,10 +41,7 @@ impl Effects {
     #[must_use]
     pub fn reaching(self, rod: &Rod, tau: f64) -> Self {
         let needs_all = rod.taper * tau > SLENDER || rod.mount != 0.0;
-        Self {
-            gradient: self.gradient || self.similar() && needs_all,
-            ..self
-        }
+        Self { gradient: self.gradient || self.similar() && needs_all, ..self }
     }
 
     /// Returns the effects that at least one of `rods` has.

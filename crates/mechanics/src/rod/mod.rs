@@ -7,10 +7,7 @@ mod effects;
 mod piece_weights;
 mod radius;
 mod rest;
-#[allow(
-    clippy::module_inception,
-    reason = "the module is named after its main type"
-)]
+#[allow(clippy::module_inception, reason = "the module is named after its main type")]
 mod rod;
 mod taper;
 mod units;

@@ -71,11 +71,7 @@ impl RadiusProfile {
             let at = |i: u32| arclength_at(self.taper, f64::from(i).mul_add(-h, end));
             let (from, to) = (at(i), at(i + 1));
             let length = from - to;
-            let weight = PieceCompliance {
-                piece,
-                from,
-                length,
-            };
+            let weight = PieceCompliance { piece, from, length };
             integrals(&weight).map(|row| row.map(|weight| length * weight))
         };
         (0..steps).map(step).collect()

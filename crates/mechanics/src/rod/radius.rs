@@ -83,11 +83,7 @@ impl RadiusProfile {
         };
         let mut pieces: Vec<Piece> = cubics.map(piece).collect();
         let whole = pointed(taper);
-        pieces.push(Piece {
-            from: end,
-            tau: tau_at(taper, end),
-            cubic: [last, -taper, 0.0, 0.0],
-        });
+        pieces.push(Piece { from: end, tau: tau_at(taper, end), cubic: [last, -taper, 0.0, 0.0] });
         widths.push((whole - end).max(0.0));
         let (mut changes, mut parts) = (Vec::new(), Vec::new());
         for (piece, width) in pieces.iter().zip(&widths) {
@@ -153,11 +149,7 @@ impl RadiusProfile {
         let whole = s * flat - lever;
         let turn = move |k: usize| {
             let from = self.compliances[k];
-            let to = if k == last {
-                [flat, lever]
-            } else {
-                self.compliances[k + 1]
-            };
+            let to = if k == last { [flat, lever] } else { self.compliances[k + 1] };
             s * (to[0] - from[0]) - (to[1] - from[1])
         };
         (0..=last).map(move |k| turn(k) / whole)
@@ -182,9 +174,7 @@ impl RadiusProfile {
     /// Returns the index of the piece on which the arclength `s`, in whisker lengths, lies. A row belongs to the piece that it ends.
     #[must_use]
     pub fn piece(&self, s: f64) -> usize {
-        self.pieces
-            .partition_point(|piece| piece.from < s)
-            .saturating_sub(1)
+        self.pieces.partition_point(|piece| piece.from < s).saturating_sub(1)
     }
 
     /// Returns the radius of the profile at arclength `s`, in whisker lengths, over the base radius.

@@ -84,11 +84,7 @@ pub(crate) fn pointed(taper: f64) -> f64 {
 
 /// Returns `tau` at arclength `s`, in whisker lengths, on a rod of this taper: see [`Rod::tau`].
 pub(crate) fn tau_at(taper: f64, s: f64) -> f64 {
-    if taper == 0.0 {
-        s
-    } else {
-        -libm::log1p(-taper * s) / taper
-    }
+    if taper == 0.0 { s } else { -libm::log1p(-taper * s) / taper }
 }
 
 /// Returns the derivative of [`tau_at`] by the variable of the dual numbers.
@@ -106,11 +102,7 @@ pub fn arclength(rod: &Rod, tau: f64) -> f64 {
 
 /// Returns the arclength at `tau` on a rod of this taper, in whisker lengths: see [`arclength`].
 pub(crate) fn arclength_at(taper: f64, tau: f64) -> f64 {
-    if taper == 0.0 {
-        tau
-    } else {
-        -libm::expm1(-taper * tau) / taper
-    }
+    if taper == 0.0 { tau } else { -libm::expm1(-taper * tau) / taper }
 }
 
 impl Rod {
@@ -159,10 +151,7 @@ impl Rod {
     /// Returns this rod with another `friction` coefficient.
     #[must_use]
     pub fn with_friction(&self, friction: f64) -> Self {
-        Self {
-            friction,
-            ..self.clone()
-        }
+        Self { friction, ..self.clone() }
     }
 
     /// Returns the whisker's unit tangent at the contact, in axes whose second one is along the force.
@@ -199,11 +188,7 @@ impl Rod {
     pub fn tau_tip_derivative(&self, by_taper: f64) -> f64 {
         let s = pointed(self.taper);
         // The cut of a perfect cone moves with the taper.
-        let by_s = if s < 1.0 {
-            -s / self.taper * by_taper
-        } else {
-            0.0
-        };
+        let by_s = if s < 1.0 { -s / self.taper * by_taper } else { 0.0 };
         let dual = |value, derivative| Dual { value, derivative };
         tau_derivative(dual(self.taper, by_taper), dual(s, by_s))
     }
@@ -227,10 +212,7 @@ impl Rod {
         let s = arclength(self, tau);
         let scale = self.radius(tau);
         let cone = s * s * (1.0 + 2.0 * scale) / (6.0 * scale * scale);
-        let bending = self
-            .profile
-            .as_ref()
-            .map_or(cone, |profile| profile.compliance(s));
+        let bending = self.profile.as_ref().map_or(cone, |profile| profile.compliance(s));
         (bending + self.mount * s) / cone
     }
 

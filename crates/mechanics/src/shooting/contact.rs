@@ -50,10 +50,8 @@ pub fn parabola_tangent<T: Real>(bend: T, at_base: T, s: T) -> [T; 2] {
     let z = T::of(4.0) * bend * s + at_base;
     // As in `Parabola::slope_at`.
     let square = z * z;
-    let power = square.mul_add(
-        T::of(0.253) + T::of(0.0437) * square.sqrt() + T::of(1.0 / 256.0) * square,
-        one,
-    );
+    let power = square
+        .mul_add(T::of(0.253) + T::of(0.0437) * square.sqrt() + T::of(1.0 / 256.0) * square, one);
     let t = half * z / power.sqrt().sqrt().sqrt();
     let square = t * t;
     let root_square = one + square;

@@ -47,10 +47,7 @@ impl ShootingMap {
     /// Returns the step `(tau, load)` that cancels `residual = ln P_wanted/P` to first order.
     #[must_use]
     pub fn solve(&self, residual: DVec2) -> DVec2 {
-        DVec2::new(
-            residual.perp_dot(self.by_load),
-            self.by_tau.perp_dot(residual),
-        ) / self.det()
+        DVec2::new(residual.perp_dot(self.by_load), self.by_tau.perp_dot(residual)) / self.det()
     }
 
     /// Returns Newton's step `(tau, load)` toward the pole's centre `wanted`, in whisker lengths in the frame of the base. It is
@@ -160,10 +157,7 @@ impl FirstVariation {
         let ln_pole = map.by_tau * step.x + map.by_load * step.y;
         let angle = tau.angle * step.x + load.angle * step.y;
         FullState {
-            map: ShootingMap {
-                pole: map.pole + ln_pole.rotate(map.pole),
-                ..map
-            },
+            map: ShootingMap { pole: map.pole + ln_pole.rotate(map.pole), ..map },
             tangent: full.tangent + angle * full.tangent.perp(),
             position: full.position + tau.position * step.x + load.position * step.y,
             force: full.force + tau.force * step.x + load.force * step.y,
@@ -190,11 +184,7 @@ impl SecondVariation {
     /// unchanged.
     #[must_use]
     pub fn extrapolated(&self, step: DVec2) -> Self {
-        let ShootingMap {
-            pole,
-            by_tau,
-            by_load,
-        } = self.map;
+        let ShootingMap { pole, by_tau, by_load } = self.map;
         let turned_tau = self.by_tau_tau * step.x + self.by_tau_load * step.y;
         let turned_load = self.by_tau_load * step.x + self.by_load_load * step.y;
         let [tau, load] = [by_tau + 0.5 * turned_tau, by_load + 0.5 * turned_load];
@@ -212,9 +202,7 @@ impl SecondVariation {
     /// Returns the gradient of the Jacobian determinant [`ShootingMap::det`] by `(tau, load)`.
     #[must_use]
     pub fn det_gradient(&self) -> DVec2 {
-        let ShootingMap {
-            by_tau, by_load, ..
-        } = self.map;
+        let ShootingMap { by_tau, by_load, .. } = self.map;
         DVec2::new(
             self.by_tau_tau.perp_dot(by_load) + by_tau.perp_dot(self.by_tau_load),
             self.by_tau_load.perp_dot(by_load) + by_tau.perp_dot(self.by_load_load),

@@ -19,13 +19,7 @@ pub fn in_mount<T: Real, S: Sensitivity<T>>(
 ) -> (Planar<T>, Carried<T, S>) {
     let turn = compliance * force * x;
     let [cos, sin] = direction(turn);
-    let turned = [
-        c * cos - s * sin,
-        c.mul_add(sin, s * cos),
-        x,
-        y,
-        bent + turn,
-    ];
+    let turned = [c * cos - s * sin, c.mul_add(sin, s * cos), x, y, bent + turn];
     let angles = angles.plus(compliance, S::moments(force, x, levers));
     (turned, (angles, (levers, sums)))
 }

@@ -85,11 +85,7 @@ impl<T: Real> Intrinsic<T> for Bent<T> {
             ($($n:literal)*) => { [$(term::<T, $n>(sin, square)),*] };
         }
         let terms = terms!(0 1 2 3 4 5 6 7 8 9 10 11);
-        ParabolaSeries {
-            tangent,
-            rate: -from.rho * self.twice_bend * cos * cos,
-            terms,
-        }
+        ParabolaSeries { tangent, rate: -from.rho * self.twice_bend * cos * cos, terms }
     }
 
     #[inline(always)]

@@ -182,12 +182,7 @@ impl Reader {
     /// in radians, whole forces with the sign `side`.
     #[must_use]
     pub fn of_one(&self, side: f64) -> [f64; Reading::CHANNELS.len()] {
-        let Units {
-            length_mm,
-            force_un,
-            moment_nnm,
-            ..
-        } = self.units;
+        let Units { length_mm, force_un, moment_nnm, .. } = self.units;
         Reading::DIMENSIONS.map(|dimension| match dimension {
             Dimension::Length => length_mm,
             Dimension::Angle => 1f64.to_degrees(),
@@ -253,18 +248,8 @@ impl Reader {
     #[must_use]
     #[inline(always)]
     pub fn channels<T: Real>(&self, numbers: StateNumbers<T>) -> [T; Reading::CHANNELS.len()] {
-        let StateNumbers {
-            force,
-            tangent: [cos, sin],
-            position: [x, y],
-            ..
-        } = numbers;
-        let Units {
-            length_mm,
-            force_un,
-            moment_nnm,
-            ..
-        } = self.units;
+        let StateNumbers { force, tangent: [cos, sin], position: [x, y], .. } = numbers;
+        let Units { length_mm, force_un, moment_nnm, .. } = self.units;
         let (length, degrees) = (T::of(length_mm), T::of(1f64.to_degrees()));
         let whole = (force * force).sqrt();
         [

@@ -38,31 +38,19 @@ impl Resolution {
     #[must_use]
     pub const fn of(least: u32) -> Self {
         let longest = 3.2 / least as f64;
-        Self {
-            least,
-            longest: if longest < 0.4 { longest } else { 0.4 },
-            fewest: 1,
-        }
+        Self { least, longest: if longest < 0.4 { longest } else { 0.4 }, fewest: 1 }
     }
 
     /// Returns the finer of this resolution and [`Resolution::FINE`].
     #[must_use]
     pub const fn at_least_fine(self) -> Self {
-        if self.least < Self::FINE.least {
-            Self::FINE
-        } else {
-            self
-        }
+        if self.least < Self::FINE.least { Self::FINE } else { self }
     }
 
     /// Returns the resolution with twice as many steps.
     #[must_use]
     pub const fn doubled(self) -> Self {
-        Self {
-            least: 2 * self.least,
-            longest: 0.5 * self.longest,
-            fewest: 2 * self.fewest,
-        }
+        Self { least: 2 * self.least, longest: 0.5 * self.longest, fewest: 2 * self.fewest }
     }
 
     /// Returns the number of steps of a trajectory from `tau` under `load` on `rod`. With a profile it is the number for a piece that

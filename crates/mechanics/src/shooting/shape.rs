@@ -60,11 +60,7 @@ pub fn varied_profile(
     let states = loaded.iter().zip(states);
     let varied = |(s, (state, carried)): (&f64, (Planar<f64>, _))| {
         // The carried derivatives hold at a fixed arclength all along the trajectory, not at the base alone.
-        let arrival = Arrival {
-            contact: trajectory.start(),
-            taper: rod.taper,
-            rod: state,
-        };
+        let arrival = Arrival { contact: trajectory.start(), taper: rod.taper, rod: state };
         let by = GeneralFirst::at_base(&arrival, carried);
         (trajectory.loaded(*s, state), by)
     };
@@ -191,11 +187,8 @@ impl<'a> ShapeTrajectory<'a> {
             if end < from {
                 let steps = self.pieces.of(profile, k);
                 let (steps, h) = share(steps, whole, from - end);
-                let material = Measured {
-                    from: piece.from,
-                    cubic: piece.cubic,
-                    gradient: Some(gradient),
-                };
+                let material =
+                    Measured { from: piece.from, cubic: piece.cubic, gradient: Some(gradient) };
                 let system = self.system(intrinsic, material);
                 let scales = Scales::tapered(self.rod.taper, h);
                 let mut section = self.section(from);
@@ -221,20 +214,12 @@ impl<'a> ShapeTrajectory<'a> {
     }
 
     fn system<I, C>(&self, intrinsic: I, material: C) -> RodSystem<f64, I, C> {
-        RodSystem {
-            force: self.force,
-            intrinsic,
-            material,
-        }
+        RodSystem { force: self.force, intrinsic, material }
     }
 
     fn section(&self, tau: f64) -> Section<f64> {
         let rho = self.rod.radius(tau);
-        Section {
-            rho,
-            inverse_cube: 1.0 / (rho * rho * rho),
-            arclength: arclength(self.rod, tau),
-        }
+        Section { rho, inverse_cube: 1.0 / (rho * rho * rho), arclength: arclength(self.rod, tau) }
     }
 
     fn loaded(&self, s: f64, [c, sin, x, y, _]: [f64; 5]) -> RodPoint {

@@ -81,11 +81,7 @@ impl PeakStrain {
         let mut path = vec![last];
         for [arclength, lever, cos, sin] in nodes {
             if arclength < last.arclength {
-                last = StrainNode {
-                    arclength,
-                    lever,
-                    tangent: DVec2::new(cos, sin),
-                };
+                last = StrainNode { arclength, lever, tangent: DVec2::new(cos, sin) };
                 path.push(last);
             }
         }
@@ -121,10 +117,7 @@ impl PeakStrain {
             }
         }
         let (arclength, of_unit_force) = best;
-        Self {
-            arclength,
-            strain: force.abs() * of_unit_force,
-        }
+        Self { arclength, strain: force.abs() * of_unit_force }
     }
 }
 
@@ -173,11 +166,7 @@ impl Lever {
         let a3 = 10.0 * x - 4.0 * slope + 0.5 * bend;
         let a4 = -15.0 * x + 7.0 * slope - bend;
         let a5 = 6.0 * x - 3.0 * slope + 0.5 * bend;
-        Self {
-            from: from.arclength,
-            width,
-            coefficients: [a0, a1, a2, a3, a4, a5],
-        }
+        Self { from: from.arclength, width, coefficients: [a0, a1, a2, a3, a4, a5] }
     }
 
     /// The lever and its derivative at the arclength `s`.

@@ -55,10 +55,8 @@ impl<T: Real> Sensitivity<T> for NoSensitivity {
 }
 
 /// Derivatives that a trajectory carries: of angles, of levers, and sums.
-pub type Carried<T, S> = (
-    <S as Sensitivity<T>>::Pairs,
-    (<S as Sensitivity<T>>::Pairs, <S as Sensitivity<T>>::Sums),
-);
+pub type Carried<T, S> =
+    (<S as Sensitivity<T>>::Pairs, (<S as Sensitivity<T>>::Pairs, <S as Sensitivity<T>>::Sums));
 
 /// State of a trajectory: rest shape, rod and carried derivatives.
 pub type TrajectoryState<T, I, S> = (<I as Intrinsic<T>>::State, (Planar<T>, Carried<T, S>));

@@ -23,11 +23,7 @@ fn conditions(count: usize) -> Vec<InitialCondition<'static>> {
             ..Rod::default()
         };
         let s = 0.05 + 0.94 * along;
-        InitialCondition {
-            rod: kept(rod.clone()),
-            tau: rod.tau(s),
-            load: 9.0 * load / (s * s),
-        }
+        InitialCondition { rod: kept(rod.clone()), tau: rod.tau(s), load: 9.0 * load / (s * s) }
     };
     (0..count).map(condition).collect()
 }
@@ -42,16 +38,8 @@ fn measured(count: usize) -> Vec<InitialCondition<'static>> {
     let profile = Arc::new(RadiusProfile::new(&rows, 1.0));
     let condition = |InitialCondition { rod, tau, load }: InitialCondition<'static>| {
         let s = rod.radius(tau);
-        let rod = kept(Rod {
-            profile: Some(profile.clone()),
-            taper: 0.9,
-            ..rod.clone()
-        });
-        InitialCondition {
-            rod,
-            tau: rod.tau(0.1 + 0.8 * s),
-            load: 0.2 * load,
-        }
+        let rod = kept(Rod { profile: Some(profile.clone()), taper: 0.9, ..rod.clone() });
+        InitialCondition { rod, tau: rod.tau(0.1 + 0.8 * s), load: 0.2 * load }
     };
     conditions(count).into_iter().map(condition).collect()
 }
@@ -59,11 +47,7 @@ fn measured(count: usize) -> Vec<InitialCondition<'static>> {
 /// A batch has the outputs of its conditions alone, in their order, each once.
 #[test]
 fn outputs_keep_the_order_of_conditions() {
-    for conditions in [0, 1, 16, 100, 3000]
-        .map(conditions)
-        .into_iter()
-        .chain([measured(300)])
-    {
+    for conditions in [0, 1, 16, 100, 3000].map(conditions).into_iter().chain([measured(300)]) {
         let method = method(20);
         let all: Vec<ShootingMap> = Batch::new(method).shoot(&conditions);
         let mut each = vec![None; conditions.len()];
@@ -106,18 +90,12 @@ fn padding_keeps_the_accuracy() {
         let exact = Batch::new(method(128)).shoot::<ShootingMap>(&conditions);
         let worst = |found: &[ShootingMap]| {
             let pairs = found.iter().zip(&exact);
-            pairs.fold(0.0, |worst, (a, b)| {
-                f64::max(worst, a.pole.distance(b.pole))
-            })
+            pairs.fold(0.0, |worst, (a, b)| f64::max(worst, a.pole.distance(b.pole)))
         };
         for least in [5, 20] {
             let method = method(least);
             let alone = worst(&Batch::new(method).shoot::<ShootingMap>(&conditions));
-            let padded = worst(
-                &Batch::new(method)
-                    .padded()
-                    .shoot::<ShootingMap>(&conditions),
-            );
+            let padded = worst(&Batch::new(method).padded().shoot::<ShootingMap>(&conditions));
             assert!(
                 padded <= alone.max(1e-13),
                 "{count} in {least}: {padded:.1e}, alone {alone:.1e}"
@@ -133,12 +111,7 @@ fn equals_padded_are_as_if_alone() {
     let conditions = vec![one; 37];
     let method = method(20);
     let alone = Batch::new(method).shoot::<SecondVariation>(&conditions);
-    assert_eq!(
-        Batch::new(method)
-            .padded()
-            .shoot::<SecondVariation>(&conditions),
-        alone
-    );
+    assert_eq!(Batch::new(method).padded().shoot::<SecondVariation>(&conditions), alone);
 }
 
 /// The batches are larger than a chunk, so that several threads compute their blocks.
@@ -149,11 +122,7 @@ fn threads_change_nothing() {
     let [one, three] = [1, 3].map(|threads| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let pool = pool.build().unwrap();
-        pool.install(|| {
-            Batch::new(method)
-                .padded()
-                .shoot::<ShootingMap>(&conditions)
-        })
+        pool.install(|| Batch::new(method).padded().shoot::<ShootingMap>(&conditions))
     });
     assert_eq!(one, three);
 }
@@ -179,20 +148,14 @@ fn nan_stays_in_its_lane() {
 #[test]
 fn doubling_shows_the_error_of_many_rows() {
     let wave = |s: f64| (1.0 - 0.9 * s) * (1.0 + 0.1 * (150.0 * s).sin());
-    let rows: Vec<[f64; 2]> = (0..=200)
-        .map(|i| f64::from(i) / 200.0)
-        .map(|s| [s, wave(s) / wave(0.0)])
-        .collect();
+    let rows: Vec<[f64; 2]> =
+        (0..=200).map(|i| f64::from(i) / 200.0).map(|s| [s, wave(s) / wave(0.0)]).collect();
     let rod = kept(Rod {
         taper: 1.0 - rows[200][1],
         profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
         ..Rod::default()
     });
-    let at = |load| InitialCondition {
-        rod,
-        tau: rod.tau(0.7),
-        load,
-    };
+    let at = |load| InitialCondition { rod, tau: rod.tau(0.7), load };
     let conditions = [0.5, 2.0, 4.0].map(at);
     let coarse = Resolution::of(3);
     let poles = |resolution| Batch::new(Method::new(resolution)).shoot::<ShootingMap>(&conditions);
@@ -200,9 +163,6 @@ fn doubling_shows_the_error_of_many_rows() {
     for ((once, twice), exact) in once.iter().zip(&twice).zip(&exact) {
         let error = once.pole.distance(exact.pole);
         let estimate = once.pole.distance(twice.pole);
-        assert!(
-            error > 0.0 && estimate > 0.9 * error,
-            "{estimate:e} {error:e}"
-        );
+        assert!(error > 0.0 && estimate > 0.9 * error, "{estimate:e} {error:e}");
     }
 }

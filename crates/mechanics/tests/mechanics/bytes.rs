@@ -8,9 +8,7 @@ use whiskmap_mechanics::shooting::{FirstVariation, Resolution, SecondVariation, 
 
 /// FNV-1a of a text. The text of an `f64` in Rust has all of its bits, except those of NaN.
 fn fnv(hash: u64, text: &str) -> u64 {
-    text.bytes().fold(hash, |hash, byte| {
-        (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-    })
+    text.bytes().fold(hash, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
 /// The hash of the outputs of all conditions, each alone in its block and in padded blocks.
@@ -28,9 +26,7 @@ fn hashed<O: OutputSet + std::fmt::Debug>(
 /// The hash of numbers of the rods at rest, which are computed without lanes.
 fn at_rest(hash: u64, rods: &[Rod]) -> u64 {
     let places = (1..200).map(|i| f64::from(i) / 200.0);
-    let pairs = rods
-        .iter()
-        .flat_map(|rod| places.clone().map(move |s| (rod, s)));
+    let pairs = rods.iter().flat_map(|rod| places.clone().map(move |s| (rod, s)));
     pairs.fold(hash, |hash, (rod, s)| {
         let tau = rod.tau(s);
         let (radius, back) = (rod.radius(tau), arclength(rod, tau));

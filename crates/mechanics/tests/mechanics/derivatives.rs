@@ -15,67 +15,25 @@ type Change = (fn(&mut Rod, f64), RodDerivative);
 fn changes(rod: &Rod) -> Vec<Change> {
     let zero = RodDerivative::default;
     let mut all: Vec<Change> = vec![
-        (
-            |rod, h| rod.pole += h,
-            RodDerivative {
-                pole: 1.0,
-                ..zero()
-            },
-        ),
-        (
-            |rod, h| rod.gradient += h,
-            RodDerivative {
-                gradient: 1.0,
-                ..zero()
-            },
-        ),
-        (
-            |rod, h| rod.friction += h,
-            RodDerivative {
-                friction: 1.0,
-                ..zero()
-            },
-        ),
+        (|rod, h| rod.pole += h, RodDerivative { pole: 1.0, ..zero() }),
+        (|rod, h| rod.gradient += h, RodDerivative { gradient: 1.0, ..zero() }),
+        (|rod, h| rod.friction += h, RodDerivative { friction: 1.0, ..zero() }),
     ];
     if rod.profile.is_none() {
-        all.push((
-            |rod, h| rod.taper += h,
-            RodDerivative {
-                taper: 1.0,
-                ..zero()
-            },
-        ));
+        all.push((|rod, h| rod.taper += h, RodDerivative { taper: 1.0, ..zero() }));
     }
     if rod.spiral.is_some() {
         all.push((
             |rod, h| rod.spiral = rod.spiral.map(|[k0, k1]| [k0 + h, k1]),
-            RodDerivative {
-                spiral: [1.0, 0.0],
-                ..zero()
-            },
+            RodDerivative { spiral: [1.0, 0.0], ..zero() },
         ));
         all.push((
             |rod, h| rod.spiral = rod.spiral.map(|[k0, k1]| [k0, k1 + h]),
-            RodDerivative {
-                spiral: [0.0, 1.0],
-                ..zero()
-            },
+            RodDerivative { spiral: [0.0, 1.0], ..zero() },
         ));
     } else if rod.polynomial.is_none() {
-        all.push((
-            |rod, h| rod.bend += h,
-            RodDerivative {
-                bend: 1.0,
-                ..zero()
-            },
-        ));
-        all.push((
-            |rod, h| rod.slope += h,
-            RodDerivative {
-                slope: 1.0,
-                ..zero()
-            },
-        ));
+        all.push((|rod, h| rod.bend += h, RodDerivative { bend: 1.0, ..zero() }));
+        all.push((|rod, h| rod.slope += h, RodDerivative { slope: 1.0, ..zero() }));
     }
     all
 }
@@ -164,35 +122,20 @@ fn trajectories_are_differentiated_by_every_number() {
                 _ => 1.0,
             };
             let at = |h: f64| match (variable, i.checked_sub(2)) {
-                (TrajectoryVariable::Tau, _) => values(
-                    doubled,
-                    &InitialCondition {
-                        tau: tau + h,
-                        ..condition
-                    },
-                    &here,
-                ),
+                (TrajectoryVariable::Tau, _) => {
+                    values(doubled, &InitialCondition { tau: tau + h, ..condition }, &here)
+                }
                 (_, Some(i)) => {
                     let rod = &moved(rod, changes[i].0, h);
                     values(doubled, &InitialCondition { rod, tau, load }, &here)
                 }
-                _ => values(
-                    doubled,
-                    &InitialCondition {
-                        load: load + h,
-                        ..condition
-                    },
-                    &here,
-                ),
+                _ => values(doubled, &InitialCondition { load: load + h, ..condition }, &here),
             };
             let differences = richardson(1e-3 * size, at);
             for (k, (exact, difference)) in numbers(&by[i]).into_iter().zip(differences).enumerate()
             {
                 let apart = (exact - difference).abs() / (1.0 / size + difference.abs());
-                assert!(
-                    apart < 1e-8,
-                    "{rod:?} {variable:?} number {k}: {exact} {difference}"
-                );
+                assert!(apart < 1e-8, "{rod:?} {variable:?} number {k}: {exact} {difference}");
             }
         }
     }
@@ -205,10 +148,8 @@ fn first_touch_is_differentiated() {
         let rest = Rest::new(&rod);
         for (change, by) in changes(&rod) {
             for distance in [0.3, 0.8] {
-                let (moved_pole, pole) = (
-                    rest.touch_derivative(distance, 0.7, &by),
-                    rest.pole_at_distance(distance),
-                );
+                let (moved_pole, pole) =
+                    (rest.touch_derivative(distance, 0.7, &by), rest.pole_at_distance(distance));
                 let point = rest.point_derivative(distance, 0.7, &by);
                 let at = |h: f64| {
                     let rest = Rest::new(&moved(&rod, change, h));

@@ -8,43 +8,19 @@ use whiskmap_mechanics::shooting::{SecondVariation, ShootingMap};
 
 /// A rod with each effect, one with none, and two with radii measured in different places.
 pub fn rods() -> Vec<Rod> {
-    let cone = Rod {
-        taper: 0.9,
-        pole: 0.01,
-        ..Rod::default()
-    };
+    let cone = Rod { taper: 0.9, pole: 0.01, ..Rod::default() };
     let measured = |rows: &[[f64; 2]]| Rod {
         profile: Some(Arc::new(RadiusProfile::new(rows, 1.0))),
         ..cone.clone()
     };
     vec![
-        Rod {
-            taper: 0.0,
-            ..cone.clone()
-        },
+        Rod { taper: 0.0, ..cone.clone() },
         cone.clone(),
-        Rod {
-            bend: 0.4,
-            slope: -0.1,
-            ..cone.clone()
-        },
-        Rod {
-            spiral: Some([0.3, -0.8]),
-            ..cone.clone()
-        },
-        Rod {
-            gradient: 0.5,
-            ..cone.clone()
-        },
+        Rod { bend: 0.4, slope: -0.1, ..cone.clone() },
+        Rod { spiral: Some([0.3, -0.8]), ..cone.clone() },
+        Rod { gradient: 0.5, ..cone.clone() },
         measured(&[[0.0, 1.0], [0.5, 0.7], [1.0, 0.1]]),
-        measured(&[
-            [0.0, 1.0],
-            [0.1, 0.8],
-            [0.2, 0.7],
-            [0.5, 0.3],
-            [0.6, 0.3],
-            [1.0, 0.1],
-        ]),
+        measured(&[[0.0, 1.0], [0.1, 0.8], [0.2, 0.7], [0.5, 0.3], [0.6, 0.3], [1.0, 0.1]]),
         Rod {
             polynomial: Some(Arc::new(CurvaturePolynomial::new([
                 0.2, -0.4, 0.15, 0.1, -0.1, 0.05, 0.05,
@@ -58,11 +34,8 @@ pub fn rods() -> Vec<Rod> {
 pub fn conditions(rods: &[Rod]) -> Vec<InitialCondition<'_>> {
     let on = |rod| [0.3, 0.55, 0.8].map(|s| (rod, s));
     let pairs = rods.iter().flat_map(on);
-    let condition = |(rod, s): (_, f64)| InitialCondition {
-        rod,
-        tau: Rod::tau(rod, s),
-        load: 5.0 / (s * s),
-    };
+    let condition =
+        |(rod, s): (_, f64)| InitialCondition { rod, tau: Rod::tau(rod, s), load: 5.0 / (s * s) };
     pairs.map(condition).collect()
 }
 

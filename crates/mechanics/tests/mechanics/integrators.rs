@@ -18,12 +18,7 @@ const EFFECTS: Effects = Effects {
 };
 
 pub(super) fn steps(least: u32) -> Method {
-    Method::new(Resolution {
-        least,
-        longest: 0.4,
-        fewest: 1,
-    })
-    .with_effects(EFFECTS)
+    Method::new(Resolution { least, longest: 0.4, fewest: 1 }).with_effects(EFFECTS)
 }
 
 pub(super) fn rods() -> Vec<InitialCondition<'static>> {
@@ -41,11 +36,7 @@ pub(super) fn rods() -> Vec<InitialCondition<'static>> {
                     ..Rod::default()
                 };
                 let tau = rod.tau(0.9);
-                conditions.push(InitialCondition {
-                    rod: Box::leak(Box::new(rod)),
-                    tau,
-                    load,
-                });
+                conditions.push(InitialCondition { rod: Box::leak(Box::new(rod)), tau, load });
             }
         }
     }
@@ -54,17 +45,9 @@ pub(super) fn rods() -> Vec<InitialCondition<'static>> {
 
 /// Position of the base of a straight cylinder without friction under `load`.
 fn end(load: f64, steps: u32) -> DVec2 {
-    let system = RodSystem {
-        force: load,
-        intrinsic: Straight,
-        material: Uniform,
-    };
+    let system = RodSystem { force: load, intrinsic: Straight, material: Uniform };
     let h = 0.9 / f64::from(steps);
-    let section = Section {
-        rho: 1.0,
-        inverse_cube: 1.0,
-        arclength: 0.9,
-    };
+    let section = Section { rho: 1.0, inverse_cube: 1.0, arclength: 0.9 };
     let contact = ((), ([1.0, 0.0, 0.0, 0.0, 0.0], ((), ((), ()))));
     let scales = Scales::cylinder(h);
     let (_, ([_, _, x, y, _], _)) =
@@ -102,10 +85,7 @@ fn batches_have_the_order() {
 fn the_fine_resolution_is_exact() {
     let fine = Method::fine().with_effects(EFFECTS);
     let exact = Batch::new(steps(512)).shoot::<ShootingMap>(&rods());
-    for (a, b) in exact
-        .iter()
-        .zip(Batch::new(fine).shoot::<ShootingMap>(&rods()))
-    {
+    for (a, b) in exact.iter().zip(Batch::new(fine).shoot::<ShootingMap>(&rods())) {
         assert!(a.pole.distance(b.pole) < 1e-11, "{} {}", a.pole, b.pole);
     }
 }

@@ -2,14 +2,8 @@
 
 use whiskmap_mechanics::rod::{Demands, RadiusProfile};
 
-const ROWS: [[f64; 2]; 6] = [
-    [0.0, 1.0],
-    [0.1, 0.93],
-    [0.3, 0.9],
-    [0.5, 0.9],
-    [0.8, 0.2],
-    [1.0, 0.05],
-];
+const ROWS: [[f64; 2]; 6] =
+    [[0.0, 1.0], [0.1, 0.93], [0.3, 0.9], [0.5, 0.9], [0.8, 0.2], [1.0, 0.05]];
 
 #[test]
 fn it_goes_through_the_rows_smoothly_and_falls_where_they_do() {
@@ -19,14 +13,9 @@ fn it_goes_through_the_rows_smoothly_and_falls_where_they_do() {
     }
     for pair in profile.pieces[..ROWS.len() - 1].windows(2) {
         let row = pair[1].from;
-        assert!(
-            (pair[0].slope(row) - pair[1].slope(row)).abs() < 1e-13,
-            "{row}"
-        );
+        assert!((pair[0].slope(row) - pair[1].slope(row)).abs() < 1e-13, "{row}");
     }
-    let radii: Vec<f64> = (0..=1000)
-        .map(|i| profile.radius(f64::from(i) / 1000.0))
-        .collect();
+    let radii: Vec<f64> = (0..=1000).map(|i| profile.radius(f64::from(i) / 1000.0)).collect();
     assert!(radii.is_sorted_by(|a, b| a >= b));
 }
 
@@ -59,10 +48,8 @@ fn the_way_from_the_last_row_to_the_tip_counts() {
 
 #[test]
 fn a_cone_is_as_compliant_as_by_integration() {
-    let rows: Vec<[f64; 2]> = (0..=20)
-        .map(|i| f64::from(i) / 20.0)
-        .map(|s| [s, 1.0 - 0.8 * s])
-        .collect();
+    let rows: Vec<[f64; 2]> =
+        (0..=20).map(|i| f64::from(i) / 20.0).map(|s| [s, 1.0 - 0.8 * s]).collect();
     let profile = RadiusProfile::new(&rows, 1.0);
     for s in [0.01_f64, 0.3, 0.72, 1.0] {
         // Two integrations of (1 - 0.8 s)^-4.
@@ -90,10 +77,7 @@ fn pieces_share_the_bending() {
             let exact = (share * (0.25 / s).min(1.0)).sqrt().max(0.5 * share);
             let found = f64::from(profile.demands.of(Demands::reach(s), k).bending);
             // Other contacts of the reach have larger demands.
-            assert!(
-                (exact - 1e-6..exact + 0.25).contains(&found),
-                "{s}, {k}: {exact}, {found}"
-            );
+            assert!((exact - 1e-6..exact + 0.25).contains(&found), "{s}, {k}: {exact}, {found}");
         }
     }
     // The only piece has all the bending and no roughness.

@@ -7,15 +7,8 @@ use whiskmap_mechanics::shooting::Resolution;
 /// `tau` steps of length 1.
 #[test]
 fn steps_are_rounded_up_to_three_bits() {
-    let resolution = Resolution {
-        least: 0,
-        longest: 1.0,
-        fewest: 1,
-    };
-    let cone = Rod {
-        taper: 1.0,
-        ..Rod::default()
-    };
+    let resolution = Resolution { least: 0, longest: 1.0, fewest: 1 };
+    let cone = Rod { taper: 1.0, ..Rod::default() };
     let steps = |wanted: f64| resolution.steps(&cone, wanted, 0.0);
     for quarters in 0..4 * 9000 {
         let wanted = 0.25 * f64::from(quarters);
@@ -33,11 +26,7 @@ fn steps_are_rounded_up_to_three_bits() {
 /// The number of steps for the load is rounded like the number for the length.
 #[test]
 fn steps_for_the_load_are_rounded_as_well() {
-    let resolution = Resolution {
-        least: 20,
-        longest: f64::INFINITY,
-        fewest: 1,
-    };
+    let resolution = Resolution { least: 20, longest: f64::INFINITY, fewest: 1 };
     for load in 0..2000 {
         let steps = resolution.steps(&Rod::default(), 1.0, 0.01 * f64::from(load));
         let wanted = 20.0 * (0.28 + 0.195 * (0.01 * f64::from(load)).sqrt());

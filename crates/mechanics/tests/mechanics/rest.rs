@@ -9,11 +9,7 @@ use whiskmap_mechanics::rod::{CurvaturePolynomial, Rest, Rod};
 fn a_chord_ends_on_the_parabola() {
     for bend in [0.0, 0.02, -0.4, 5.0] {
         for slope in [0.0, 1e-12, 0.3] {
-            let rest = Rest::new(&Rod {
-                bend,
-                slope,
-                ..Rod::default()
-            });
+            let rest = Rest::new(&Rod { bend, slope, ..Rod::default() });
             for chord in [1e-6, 0.3, 1.0] {
                 // In the frame of the parabola.
                 let base = DVec2::new(1.0, slope).normalize();
@@ -86,10 +82,7 @@ fn a_polynomial_curvature_gives_its_curve() {
         let mut coefficients = [0.0; 7];
         coefficients[degree] = size;
         let curvature = CurvaturePolynomial::new(coefficients);
-        let rest = Rest::new(&Rod {
-            polynomial: Some(Arc::new(curvature)),
-            ..Rod::default()
-        });
+        let rest = Rest::new(&Rod { polynomial: Some(Arc::new(curvature)), ..Rod::default() });
         for s in [0.0, 0.1, 0.37, 0.5, 0.9, 1.0] {
             let expected = size * legendre(2.0 * s - 1.0)[degree];
             let error = (curvature.at(s) - expected).abs();
@@ -106,10 +99,7 @@ fn a_polynomial_curvature_gives_its_curve() {
 #[test]
 fn a_spiral_gives_its_curve() {
     for spiral in [[0.0, 0.0], [1.0, -2.0], [-0.3, 4.0], [-20.0, 40.0]] {
-        let rest = Rest::new(&Rod {
-            spiral: Some(spiral),
-            ..Rod::default()
-        });
+        let rest = Rest::new(&Rod { spiral: Some(spiral), ..Rod::default() });
         let error = error(&rest);
         assert!(error < 1e-14, "{spiral:?}: {error:e}");
         for s in [0.1, 0.5, 1.0, 1.3] {

@@ -6,10 +6,7 @@ use whiskmap_mechanics::numerics::newton_form::{
 };
 use whiskmap_mechanics::numerics::{Bracket, Root, illinois};
 
-const UNIT: Bracket = Bracket {
-    below: 0.0,
-    above: 1.0,
-};
+const UNIT: Bracket = Bracket { below: 0.0, above: 1.0 };
 
 /// Newton's method for `f`, which returns value and slope.
 fn newton(bracket: Bracket, start: f64, f: impl Fn(f64) -> (f64, f64)) -> Root {
@@ -58,20 +55,14 @@ fn a_step_out_of_the_bracket_goes_to_its_middle() {
 #[test]
 fn a_triple_root_is_found_slowly() {
     let root = newton(UNIT, 1.0, |x| ((x - 0.3).powi(3), 3.0 * (x - 0.3).powi(2)));
-    assert!(
-        (root.x - 0.3).abs() < 3e-8 && root.iterations < 50,
-        "{root:?}"
-    );
+    assert!((root.x - 0.3).abs() < 3e-8 && root.iterations < 50, "{root:?}");
 }
 
 /// The function has an extremum there and does not change its sign.
 #[test]
 fn a_double_root_is_found() {
     let root = newton(UNIT, 1.0, |x| ((x - 0.3).powi(2), 2.0 * (x - 0.3)));
-    assert!(
-        (root.x - 0.3).abs() < 3e-8 && root.iterations < 40,
-        "{root:?}"
-    );
+    assert!((root.x - 0.3).abs() < 3e-8 && root.iterations < 40, "{root:?}");
 }
 
 /// A slope of 0 or NaN proposes no step: bisection continues alone.
@@ -79,9 +70,8 @@ fn a_double_root_is_found() {
 fn without_slopes_it_bisects() {
     for slope in [0.0, f64::NAN, f64::INFINITY] {
         let value = |x: f64| x - 0.3;
-        let root = newton(UNIT, 1.0, |x| {
-            (value(x), if slope.is_infinite() { -1e-9 } else { slope })
-        });
+        let root =
+            newton(UNIT, 1.0, |x| (value(x), if slope.is_infinite() { -1e-9 } else { slope }));
         assert!((root.x - 0.3).abs() <= f64::EPSILON, "{slope} {root:?}");
         assert!((50..60).contains(&root.iterations), "{slope} {root:?}");
     }
@@ -90,10 +80,7 @@ fn without_slopes_it_bisects() {
 #[test]
 fn nan_counts_as_above() {
     let sqrt = |x: f64| ((0.3 - x).sqrt() - 0.5, -0.5 / (0.3 - x).sqrt());
-    let bracket = Bracket {
-        below: 1.0,
-        above: 0.0,
-    };
+    let bracket = Bracket { below: 1.0, above: 0.0 };
     let root = newton(bracket, 0.9, sqrt);
     assert!(root.x.is_finite() && root.iterations < 70, "{root:?}");
     let nowhere = newton(UNIT, 0.5, |_| (f64::NAN, f64::NAN));
@@ -122,10 +109,7 @@ fn the_iteration_ends_at_rounding() {
             (value, x - value / (2.0 * x))
         },
     );
-    assert!(
-        (root.x - 0.3).abs() < 1e-9 && root.iterations < 60,
-        "{root:?}"
-    );
+    assert!((root.x - 0.3).abs() < 1e-9 && root.iterations < 60, "{root:?}");
 }
 
 #[test]
@@ -189,9 +173,7 @@ fn runs_go_through_their_samples() {
 fn a_sample_is_found_where_it_is() {
     const COUNT: usize = 10;
     for sign in [1.0, -1.0] {
-        let samples: Vec<f64> = (0..COUNT)
-            .map(|i| sign * (0.1 * i as f64 - 0.2).exp())
-            .collect();
+        let samples: Vec<f64> = (0..COUNT).map(|i| sign * (0.1 * i as f64 - 0.2).exp()).collect();
         let points = samples.iter().enumerate();
         let [polynomial] = through_nodes::<COUNT, 1>(points.map(|(i, value)| (i as f64, [*value])));
         for (k, sample) in samples.iter().enumerate() {
@@ -220,10 +202,7 @@ fn polynomials_go_through_their_values() {
         let points = LOBATTO_NODES[first..].iter().copied();
         let [polynomial] = through_nodes::<CHEBYSHEV_COUNT, 1>(points.map(|x| (x, [f(x)])));
         for (node, value) in LOBATTO_NODES[first..].iter().zip(&values) {
-            assert!(
-                (polynomial.at(*node).0 - value).abs() < 1e-13,
-                "{first} {node}"
-            );
+            assert!((polynomial.at(*node).0 - value).abs() < 1e-13, "{first} {node}");
         }
         if count == CHEBYSHEV_COUNT {
             for i in 0..=100 {
@@ -270,11 +249,6 @@ fn multisection_needs_signs_alone() {
         assert!((bracket.below - bracket.above).abs() <= f64::EPSILON && bracket.contains(0.3));
     }
     let mut bracket = UNIT;
-    let last = |points: &[f64]| {
-        points
-            .iter()
-            .find(|x| **x >= 0.9)
-            .map_or(Ok(0), |x| Err(*x))
-    };
+    let last = |points: &[f64]| points.iter().find(|x| **x >= 0.9).map_or(Ok(0), |x| Err(*x));
     assert_eq!(bracket.multisect(0.0, 16, last), Err(16.0 / 17.0));
 }

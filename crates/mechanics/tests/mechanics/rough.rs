@@ -47,14 +47,7 @@ fn poles(least: u32, conditions: &[InitialCondition]) -> Vec<ShootingMap> {
 /// largest error of 120,000 random states was 1.3e-10 of the pole's distance, with 1,000 rows.
 #[test]
 fn rough_radii_are_exact() {
-    for (rows, gradient) in [
-        (2, 0.0),
-        (8, 3.0),
-        (40, -0.6),
-        (200, 0.0),
-        (200, 5.0),
-        (1000, 0.0),
-    ] {
+    for (rows, gradient) in [(2, 0.0), (8, 3.0), (40, -0.6), (200, 0.0), (200, 5.0), (1000, 0.0)] {
         let rod = rough(rows, gradient);
         let conditions = conditions(&rod, 128);
         let least = Resolution::FINE.least;

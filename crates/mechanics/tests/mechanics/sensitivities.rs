@@ -107,19 +107,9 @@ fn derivatives_by_the_rod_agree_with_num_dual() {
             ..Rod::default()
         };
         let tau = rod.tau(0.8);
-        let condition = InitialCondition {
-            rod: &rod,
-            tau,
-            load,
-        };
-        let by_taper = RodDerivative {
-            taper: 1.0,
-            ..RodDerivative::default()
-        };
-        let by_gradient = RodDerivative {
-            gradient: 1.0,
-            ..RodDerivative::default()
-        };
+        let condition = InitialCondition { rod: &rod, tau, load };
+        let by_taper = RodDerivative { taper: 1.0, ..RodDerivative::default() };
+        let by_gradient = RodDerivative { gradient: 1.0, ..RodDerivative::default() };
         let variables = [&by_taper, &by_gradient].map(TrajectoryVariable::Rod);
         let (_, by) = differentiate(Resolution::of(128), &condition, &variables);
         for (i, value) in [rod.taper, rod.gradient].into_iter().enumerate() {
@@ -136,10 +126,7 @@ fn derivatives_by_the_rod_agree_with_num_dual() {
             let mixed = DVec2::new(ln_d.3, phi.3);
             for (found, dual) in [(by[i].ln_pole, first), (by[i].by_load, mixed)] {
                 let apart = found.distance(dual) / dual.length();
-                assert!(
-                    apart < 1e-7,
-                    "{i} at taper {taper}: {found}, num-dual {dual}"
-                );
+                assert!(apart < 1e-7, "{i} at taper {taper}: {found}, num-dual {dual}");
             }
         }
     }
@@ -195,27 +182,12 @@ fn sensitivities_of_curved_rods_agree_with_differences() {
         for (name, exact, numeric) in [
             ("by_tau", here.map.by_tau, difference(ln_pole, h, 0.0) / h),
             ("by_load", here.map.by_load, difference(ln_pole, 0.0, h) / h),
-            (
-                "by_tau_tau",
-                here.by_tau_tau,
-                difference(by_tau, h, 0.0) / h,
-            ),
-            (
-                "by_tau_load",
-                here.by_tau_load,
-                difference(by_load, h, 0.0) / h,
-            ),
-            (
-                "by_load_load",
-                here.by_load_load,
-                difference(by_load, 0.0, h) / h,
-            ),
+            ("by_tau_tau", here.by_tau_tau, difference(by_tau, h, 0.0) / h),
+            ("by_tau_load", here.by_tau_load, difference(by_load, h, 0.0) / h),
+            ("by_load_load", here.by_load_load, difference(by_load, 0.0, h) / h),
         ] {
             let miss = exact.distance(numeric) / exact.length();
-            assert!(
-                miss < 1e-5,
-                "{name} of {condition:?}: {exact}, differences {numeric}"
-            );
+            assert!(miss < 1e-5, "{name} of {condition:?}: {exact}, differences {numeric}");
         }
     }
 }

@@ -20,10 +20,7 @@ fn peak_of(rod: &Rod, tau: f64, load: f64) -> PeakStrain {
 #[test]
 fn small_loads_have_the_peak_of_the_straight_cone() {
     for taper in [0.0, 0.2, 0.5, 0.9, 1.0] {
-        let rod = Rod {
-            taper,
-            ..Rod::default()
-        };
+        let rod = Rod { taper, ..Rod::default() };
         for contact in [0.1, 0.5, 0.8, 0.99] {
             let (tau, load) = (rod.tau(contact), 1e-6);
             let place = match taper {
@@ -48,31 +45,15 @@ fn small_loads_have_the_peak_of_the_straight_cone() {
 /// maxima.
 #[test]
 fn no_point_of_a_shape_has_a_larger_strain() {
-    let rows = [
-        [0.0, 1.0],
-        [0.2, 0.8],
-        [0.35, 0.9],
-        [0.6, 0.45],
-        [0.8, 0.5],
-        [1.0, 0.1],
-    ];
+    let rows = [[0.0, 1.0], [0.2, 0.8], [0.35, 0.9], [0.6, 0.45], [0.8, 0.5], [1.0, 0.1]];
     let measured = Rod {
         taper: 0.9,
         bend: 0.4,
         profile: Some(Arc::new(RadiusProfile::new(&rows, 1.0))),
         ..Rod::default()
     };
-    let cone = |taper: f64| Rod {
-        taper,
-        bend: 0.4,
-        pole: 0.01,
-        ..Rod::default()
-    };
-    let graded = Rod {
-        gradient: -0.6,
-        friction: 0.4,
-        ..cone(0.7)
-    };
+    let cone = |taper: f64| Rod { taper, bend: 0.4, pole: 0.01, ..Rod::default() };
+    let graded = Rod { gradient: -0.6, friction: 0.4, ..cone(0.7) };
     let mut inside = 0;
     for rod in [cone(0.0), cone(0.95), graded, measured] {
         for contact in [0.3, 0.7, 0.95] {

@@ -106,10 +106,8 @@ impl<'a> ChartLayout<'a> {
         let mut rest = layouts.into_iter().peekable();
         while rest.peek().is_some() {
             let row: Vec<_> = rest.by_ref().take(columns).collect();
-            let headings: Vec<_> = row
-                .iter()
-                .map(|layout| layout.heading([left, width, right], spacing))
-                .collect();
+            let headings: Vec<_> =
+                row.iter().map(|layout| layout.heading([left, width, right], spacing)).collect();
             let most = |heights: &mut dyn Iterator<Item = f64>| heights.fold(0.0, f64::max);
             let head = most(&mut headings.iter().map(|heading| heading.height));
             let above = most(&mut row.iter().map(|layout| layout.regions.height()));

@@ -63,12 +63,7 @@ impl Line {
     /// Creates a line through `points` `[x, y]`, in data units, without a name.
     #[must_use]
     pub const fn new(points: Vec<[f64; 2]>, ink: Ink, stroke: Stroke) -> Self {
-        Self {
-            points,
-            ink,
-            stroke,
-            name: None,
-        }
+        Self { points, ink, stroke, name: None }
     }
 
     /// Sets the name of the line in the legend.
@@ -121,21 +116,13 @@ impl Note {
     /// Creates a note with a text above the point `at` `[x, y]`, in data units.
     #[must_use]
     pub fn text(at: [f64; 2], text: impl Into<String>) -> Self {
-        Self {
-            at,
-            text: text.into(),
-            ..Self::default()
-        }
+        Self { at, text: text.into(), ..Self::default() }
     }
 
     /// Creates a note with an arrow between two points `[x, y]`, in data units, and a text at the arrow's start.
     #[must_use]
     pub fn arrow(from: [f64; 2], to: [f64; 2], text: impl Into<String>, ink: Ink) -> Self {
-        Self {
-            to: Some(to),
-            ink,
-            ..Self::text(from, text)
-        }
+        Self { to: Some(to), ink, ..Self::text(from, text) }
     }
 }
 

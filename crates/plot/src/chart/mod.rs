@@ -80,12 +80,7 @@ impl Plot {
         for point in plot.bands.iter_mut().flat_map(|band| &mut band.points) {
             *point = point.map(logarithm);
         }
-        for point in plot
-            .lines
-            .iter_mut()
-            .chain(&mut plot.bars)
-            .flat_map(|line| &mut line.points)
-        {
+        for point in plot.lines.iter_mut().chain(&mut plot.bars).flat_map(|line| &mut line.points) {
             *point = logarithm(*point);
         }
         for dot in &mut plot.dots {
@@ -116,11 +111,7 @@ impl Chart {
     /// Creates a chart of one plot.
     #[must_use]
     pub fn single(title: impl Into<String>, plot: Plot) -> Self {
-        Self {
-            title: title.into(),
-            plots: vec![plot],
-            ..Self::default()
-        }
+        Self { title: title.into(), plots: vec![plot], ..Self::default() }
     }
 
     /// Lays the chart out as a picture of this size; equal charts give equal pictures.

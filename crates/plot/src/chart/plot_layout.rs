@@ -68,12 +68,7 @@ impl<'a> PlotLayout<'a> {
         };
         let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size, spacing);
         let regions = RegionNames::plan(plot.regions.as_ref(), fraction(window.x, 0.0), size[0]);
-        Self {
-            plot,
-            window,
-            axes,
-            regions,
-        }
+        Self { plot, window, axes, regions }
     }
 
     /// Lays out the plot's letter, title and legend above a body with `[left, width, right]`: its width and the space beside it.
@@ -133,11 +128,7 @@ impl<'a> PlotLayout<'a> {
             };
             (symbol, &line.name)
         });
-        let shown = self
-            .plot
-            .dots
-            .iter()
-            .filter(|dot| self.window.holds(dot.at));
+        let shown = self.plot.dots.iter().filter(|dot| self.window.holds(dot.at));
         let dots = shown.map(|dot| match dot.open {
             true => (LegendSymbol::Ring(rim(dot)), &dot.name),
             false => (LegendSymbol::Dot(dot.ink.rgb()), &dot.name),

@@ -27,11 +27,7 @@ const HALF_ANGLE: f64 = 0.45;
 
 /// Returns the pen that draws a line of a chart.
 pub fn pen(line: &Line) -> Pen {
-    Pen {
-        width: LINE,
-        colour: line.ink.rgb(),
-        dashed: line.stroke == Stroke::Dashed,
-    }
+    Pen { width: LINE, colour: line.ink.rgb(), dashed: line.stroke == Stroke::Dashed }
 }
 
 /// A window of data, and the area of the picture that shows it.

@@ -42,11 +42,7 @@ impl Window {
 
     /// Creates a square window around the point `[x, y]` with half the side `half`, all in data units.
     pub fn square(&self, [x, y]: [f64; 2], half: f64) -> Self {
-        Self {
-            x: [x - half, x + half],
-            y: [y - half, y + half],
-            largest: self.largest,
-        }
+        Self { x: [x - half, x + half], y: [y - half, y + half], largest: self.largest }
     }
 
     /// Converts a point `[x, y]` in data units to pixels of the picture, which shows the window in `body`.

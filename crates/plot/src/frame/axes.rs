@@ -83,11 +83,7 @@ impl Axes {
         let [x, y] = body.point(0.5, 0.0);
         picture.block(&self.x_label, [x, y + self.spacing.x_label], Anchor::Centre);
         let [x, y] = body.point(0.0, 0.5);
-        picture.block(
-            &self.y_label,
-            [x - left + self.spacing.y_label, y],
-            Anchor::Upwards,
-        );
+        picture.block(&self.y_label, [x - left + self.spacing.y_label, y], Anchor::Upwards);
     }
 }
 

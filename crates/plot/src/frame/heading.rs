@@ -131,11 +131,7 @@ impl Heading {
         let before_title = if letter.is_empty() { before } else { 0.0 };
         let bare = letter.is_empty() && title.is_empty();
         let title = TextBlock::new(title, LABEL, room - before + before_title);
-        let head = if bare {
-            0.0
-        } else {
-            spacing.head + title.below_first()
-        };
+        let head = if bare { 0.0 } else { spacing.head + title.below_first() };
         Self {
             letter: fitted(letter, TITLE, body[0] - 2.0 * LETTER),
             title,

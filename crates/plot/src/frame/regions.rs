@@ -35,17 +35,11 @@ impl RegionNames {
             let is_whole = block.lines.len() < 3 && block.lines.join(" ") == name;
             is_whole.then_some((block, 0.5 * (from + to)))
         };
-        let shown = regions
-            .iter()
-            .filter(|(region, side)| set(&region.short, *side).is_some());
-        let long: Option<Vec<_>> = shown
-            .map(|(region, side)| set(&region.name, *side))
-            .collect();
+        let shown = regions.iter().filter(|(region, side)| set(&region.short, *side).is_some());
+        let long: Option<Vec<_>> = shown.map(|(region, side)| set(&region.name, *side)).collect();
         Self(long.unwrap_or_else(|| {
             let short = regions.iter();
-            short
-                .filter_map(|(region, side)| set(&region.short, *side))
-                .collect()
+            short.filter_map(|(region, side)| set(&region.short, *side)).collect()
         }))
     }
 
@@ -70,29 +64,15 @@ mod tests {
 
     #[test]
     fn names_are_long_where_both_have_room_and_absent_without() {
-        let region = |name: &str, short: &str| Region {
-            name: name.to_owned(),
-            short: short.to_owned(),
-        };
-        let regions = [
-            region("concave forward (CF)", "CF"),
-            region("concave backward (CB)", "CB"),
-        ];
+        let region =
+            |name: &str, short: &str| Region { name: name.to_owned(), short: short.to_owned() };
+        let regions = [region("concave forward (CF)", "CF"), region("concave backward (CB)", "CB")];
         let names = |zero, length| {
             let names = RegionNames::plan(Some(&regions), zero, length).0;
-            names
-                .into_iter()
-                .map(|(name, _)| name.lines.join("|"))
-                .collect::<Vec<_>>()
+            names.into_iter().map(|(name, _)| name.lines.join("|")).collect::<Vec<_>>()
         };
-        assert_eq!(
-            names(0.5, 1000.0),
-            ["concave forward (CF)", "concave backward (CB)"]
-        );
-        assert_eq!(
-            names(0.5, 400.0),
-            ["concave forward|(CF)", "concave backward|(CB)"]
-        );
+        assert_eq!(names(0.5, 1000.0), ["concave forward (CF)", "concave backward (CB)"]);
+        assert_eq!(names(0.5, 400.0), ["concave forward|(CF)", "concave backward|(CB)"]);
         assert_eq!(names(0.5, 200.0), ["CF", "CB"]);
         assert_eq!(names(0.1, 600.0), ["CF", "CB"]);
         assert_eq!(names(-0.2, 1000.0), ["concave backward (CB)"]);

@@ -41,9 +41,7 @@ pub fn fraction([low, high]: [f64; 2], value: f64) -> f64 {
 /// Creates ticks at `values` of the range `[low, high]`, with equally precise labels: `[value]`.
 pub fn at(values: &[f64], range: [f64; 2]) -> Vec<Tick> {
     let ticks = values.iter().zip(labels(values));
-    ticks
-        .map(|(value, label)| Tick::new(fraction(range, *value), label))
-        .collect()
+    ticks.map(|(value, label)| Tick::new(fraction(range, *value), label)).collect()
 }
 
 /// A function that chooses the ticks of a range `[low, high]`, given about how many are wanted.
@@ -103,9 +101,7 @@ pub fn upwards(range: [f64; 2], length: f64, choose: TickChooser) -> Vec<Tick> {
 /// Creates ticks at the numbers 0, 1, 2, ... in the range `[low, high]`, with `names` as their labels: `[number]`.
 pub fn named(names: &[String], range: [f64; 2]) -> Vec<Tick> {
     let ticks = names.iter().enumerate();
-    ticks
-        .map(|(i, name)| Tick::new(fraction(range, i as f64), name.clone()))
-        .collect()
+    ticks.map(|(i, name)| Tick::new(fraction(range, i as f64), name.clone())).collect()
 }
 
 /// Returns about `wanted` round values in the range `[low, high]`: multiples of 1, 2 or 5 times a power of ten.
@@ -129,11 +125,7 @@ pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
     let low = low.max(f64::MIN_POSITIVE);
     let powers = low.log10().floor() as i32..=high.log10().ceil() as i32;
     for factors in [&[1.0][..], &[1.0, 2.0, 5.0]] {
-        let multiples = |power| {
-            factors
-                .iter()
-                .map(move |factor| factor * 10_f64.powi(power))
-        };
+        let multiples = |power| factors.iter().map(move |factor| factor * 10_f64.powi(power));
         let values = powers.clone().flat_map(multiples);
         let inside = values.filter(|value| (low..=high).contains(value));
         let values: Vec<f64> = inside.collect();
@@ -147,9 +139,7 @@ pub fn logarithmic([low, high]: [f64; 2], wanted: f64) -> Vec<f64> {
 
 /// Writes values as texts with equally many decimals, as few as make all of them different: `[value]`.
 pub fn labels(values: &[f64]) -> Vec<String> {
-    let largest = values
-        .iter()
-        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let largest = values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
     let text = |value: &f64, decimals: usize| {
         if largest != 0.0 && !(1e-3..1e6).contains(&largest) && *value != 0.0 {
             format!("{value:.decimals$e}")
@@ -167,9 +157,8 @@ pub fn labels(values: &[f64]) -> Vec<String> {
         values.iter().all(near)
     };
     let exact = (0..4).find(|decimals| within(*decimals, tenth.min(1e-6 * largest)));
-    let decimals = exact
-        .or_else(|| (4..=12).find(|decimals| within(*decimals, tenth)))
-        .unwrap_or(4);
+    let decimals =
+        exact.or_else(|| (4..=12).find(|decimals| within(*decimals, tenth))).unwrap_or(4);
     let shown = values.iter().map(|value| text(value, decimals));
     shown.map(|text| text.replace('-', "\u{2212}")).collect()
 }
@@ -180,10 +169,7 @@ mod tests {
 
     #[test]
     fn ticks_are_round_and_labels_short() {
-        assert_eq!(
-            round([-60.3, 70.3], 8.0),
-            [-60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0]
-        );
+        assert_eq!(round([-60.3, 70.3], 8.0), [-60.0, -40.0, -20.0, 0.0, 20.0, 40.0, 60.0]);
         assert!(round([0.0, 1e-323], 8.0).is_empty());
         for (values, expected) in [
             (vec![0.0, 0.5, 1.0], vec!["0.0", "0.5", "1.0"]),

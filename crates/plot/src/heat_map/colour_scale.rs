@@ -82,17 +82,11 @@ impl ColourScale {
     /// The range is not two finite numbers in increasing order. Or the scale is logarithmic, and its range begins at or below 0, or no
     /// value is above 0.
     pub fn new(summary: &ValueSummary, options: ScaleOptions) -> Result<Self, ScaleError> {
-        let log = options
-            .log
-            .unwrap_or_else(|| spans_decades(summary, options.range));
+        let log = options.log.unwrap_or_else(|| spans_decades(summary, options.range));
         if let Some(range) = options.range {
             check(range, log)?;
         }
-        let extent = if log {
-            summary.positive
-        } else {
-            summary.extent
-        };
+        let extent = if log { summary.positive } else { summary.extent };
         if log && extent.is_none() {
             return Err(ScaleError::NoPositiveValue);
         }

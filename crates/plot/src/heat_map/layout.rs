@@ -99,13 +99,7 @@ impl<'a> HeatMapLayout<'a> {
         let texts = if is_sheet { map.notes() } else { Vec::new() };
         let noted = match size {
             PictureSize::Print(_) => 0.0,
-            _ => {
-                texts
-                    .iter()
-                    .map(|note| font::width(note, TICK))
-                    .fold(0.0, f64::max)
-                    + SIDES[1]
-            }
+            _ => texts.iter().map(|note| font::width(note, TICK)).fold(0.0, f64::max) + SIDES[1],
         };
         let width = left + (area[0] + right).max(noted);
         let right = width - left - area[0];
@@ -116,10 +110,7 @@ impl<'a> HeatMapLayout<'a> {
         };
         let body = [left, area[0] + beyond, right - beyond];
         let [before, room] = spacing.head_span(body);
-        let notes: Vec<_> = texts
-            .iter()
-            .map(|note| TextBlock::new(note, TICK, room))
-            .collect();
+        let notes: Vec<_> = texts.iter().map(|note| TextBlock::new(note, TICK, room)).collect();
         let title = TextBlock::new(&map.title, TITLE, room);
         let heading = Heading::plan([""; 2], legend, body, spacing);
         let alone = map.regions.as_ref().filter(|_| !is_sheet);
@@ -189,10 +180,7 @@ fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacin
         return Axes::new([(Vec::new(), ""), (Vec::new(), "")], area, spacing);
     }
     let ticks = |side: usize| -> Vec<Tick> {
-        let labels = axes[side]
-            .iter()
-            .flat_map(|axis| axis.texts.iter().cloned())
-            .enumerate();
+        let labels = axes[side].iter().flat_map(|axis| axis.texts.iter().cloned()).enumerate();
         let ticks = labels.map(|(place, label)| Tick::new(panels.middle(side, place, area), label));
         ticks.collect()
     };

@@ -143,10 +143,7 @@ impl HeatMap {
         let across = format!("each panel, to the right: {}", self.x.summary());
         let upwards = format!("each panel, upwards: {}", self.y.summary());
         let regions = self.regions.iter().map(|[left, right]| {
-            format!(
-                "each panel, left of 0: {}; right: {}",
-                left.name, right.name
-            )
+            format!("each panel, left of 0: {}; right: {}", left.name, right.name)
         });
         let inside = [across, upwards].into_iter().chain(regions);
         above.into_iter().chain(inside).collect()
@@ -157,9 +154,7 @@ impl HeatMap {
         let columns = self.x.count();
         picture.raster(area, |across, up| {
             let cell = self.y.cell(up) * columns + self.x.cell(across);
-            let fill = self
-                .shading
-                .fill(panel.values.get(cell).copied().unwrap_or(f64::NAN));
+            let fill = self.shading.fill(panel.values.get(cell).copied().unwrap_or(f64::NAN));
             match panel.hatched.get(cell) {
                 Some(true) => fill.hatched(),
                 _ => fill,

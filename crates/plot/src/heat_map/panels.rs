@@ -41,11 +41,8 @@ impl PanelGrid {
             [Some(axis), None] | [None, Some(axis)] if count > 1 => Some(axis),
             _ => None,
         };
-        let columns = if count > IN_ONE_ROW {
-            (count as f64).sqrt().ceil() as usize
-        } else {
-            count
-        };
+        let columns =
+            if count > IN_ONE_ROW { (count as f64).sqrt().ceil() as usize } else { count };
         let labels = |axis: &PanelAxis| axis.texts.clone();
         Self {
             count,
@@ -98,11 +95,7 @@ impl PanelGrid {
                 .max(0.0)),
             false => 0.0,
         };
-        Self {
-            pitch: [0, 1].map(|axis| (area[axis] + gap) / counts[axis]),
-            gap,
-            ..self
-        }
+        Self { pitch: [0, 1].map(|axis| (area[axis] + gap) / counts[axis]), gap, ..self }
     }
 
     /// Returns the middle of the panels at an index `place` along an `axis`, as a fraction of the area `[width, height]`.
@@ -116,11 +109,7 @@ impl PanelGrid {
         let [columns, rows] = self.counts;
         let [column, row] = [index % columns, index / columns];
         // Along an axis, panels stand upwards; in rows of one axis, they are read from the top.
-        let from_top = if self.labels.is_empty() {
-            rows - 1 - row
-        } else {
-            row
-        };
+        let from_top = if self.labels.is_empty() { rows - 1 - row } else { row };
         let left = body.left + self.pitch[0] * column as f64;
         let top = body.top + self.pitch[1] * from_top as f64 + self.label();
         let [width, height] = self.pitch.map(|pitch| pitch - self.gap);

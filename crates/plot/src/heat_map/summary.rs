@@ -86,10 +86,7 @@ mod tests {
             let mut summary = ValueSummary::default();
             summary.extend((-5..=count).map(f64::from));
             let (start, below) = summary.positive_start();
-            assert!(
-                start <= expected && start > 0.99 * expected,
-                "{count}: {start}"
-            );
+            assert!(start <= expected && start > 0.99 * expected, "{count}: {start}");
             assert!(below as f64 <= 0.01 * f64::from(count), "{count}: {below}");
         }
         let mut outlier = ValueSummary::default();

@@ -15,11 +15,7 @@ pub struct Coverage {
 impl Coverage {
     /// Creates a coverage buffer for a picture of `size` pixels, `[width, height]`.
     pub fn new(size: [usize; 2]) -> Self {
-        Self {
-            size,
-            parts: vec![0.0; size[0] * size[1]],
-            touched: Vec::new(),
-        }
+        Self { size, parts: vec![0.0; size[0] * size[1]], touched: Vec::new() }
     }
 
     /// Returns the pixels `[x, y]` that a polyline with round ends and corners touches, each once, with the fraction covered. A single
@@ -168,10 +164,7 @@ mod tests {
     #[test]
     fn a_polygon_covers_its_area() {
         let area = |corners: &[[f64; 2]]| -> f64 {
-            polygon(corners, [20, 20])
-                .iter()
-                .map(|(_, part)| part)
-                .sum()
+            polygon(corners, [20, 20]).iter().map(|(_, part)| part).sum()
         };
         let square = [[2.25, 3.5], [9.5, 3.5], [9.5, 8.0], [2.25, 8.0]];
         assert!((area(&square) - 7.25 * 4.5).abs() < 1e-12);

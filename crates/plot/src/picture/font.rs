@@ -34,25 +34,14 @@ pub struct Run<'a> {
 
 /// Returns the runs of a text of font size `size`, `[run]`: between and inside its subscripts. A subscript without an end is plain text.
 pub fn runs(text: &str, size: f64) -> Vec<Run<'_>> {
-    let plain = |text| Run {
-        text,
-        size,
-        drop: 0.0,
-    };
+    let plain = |text| Run { text, size, drop: 0.0 };
     let mut runs = Vec::new();
     let mut rest = text;
     while let Some((before, after)) = rest.split_once("_{")
         && let Some((text, next)) = after.split_once('}')
     {
         let [part, drop] = SUBSCRIPT.map(|part| part * size);
-        runs.extend([
-            plain(before),
-            Run {
-                text,
-                size: part,
-                drop,
-            },
-        ]);
+        runs.extend([plain(before), Run { text, size: part, drop }]);
         rest = next;
     }
     runs.push(plain(rest));
@@ -90,9 +79,7 @@ fn each_glyph(
 pub fn outlines(text: &str, size: f64) -> Vec<OutlinedGlyph> {
     let mut outlines = Vec::new();
     each_glyph(text, size, |font, c, [x, y]| {
-        let glyph = font
-            .glyph_id(c)
-            .with_scale_and_position(font.scale(), point(x, y));
+        let glyph = font.glyph_id(c).with_scale_and_position(font.scale(), point(x, y));
         outlines.extend(font.outline_glyph(glyph));
     });
     outlines
@@ -145,11 +132,7 @@ mod tests {
             [("\u{3b8}", 10.0), ("obj", 7.0), (" (deg)", 10.0)]
         );
         for plain in ["tip_radius_um", "a_{b", "{p}", ""] {
-            assert!(
-                texts(plain)
-                    .iter()
-                    .all(|(text, size)| *text == plain && *size == 10.0)
-            );
+            assert!(texts(plain).iter().all(|(text, size)| *text == plain && *size == 10.0));
         }
         assert!(runs("a_{b}", 10.0)[1].drop > 1.0);
         let typeset = width("\u{3b8}_{p}", 10.0);

@@ -68,12 +68,7 @@ impl Picture {
             PictureSize::Width(pixels) => (natural, f64::from(pixels) / natural[0], false),
             PictureSize::Print(print) => (units, print.scale(), true),
         };
-        Self {
-            size,
-            scale,
-            is_print,
-            primitives: Vec::new(),
-        }
+        Self { size, scale, is_print, primitives: Vec::new() }
     }
 
     /// Returns the bytes of the picture as a file; equal pictures give equal bytes.
@@ -91,21 +86,17 @@ impl Picture {
     /// Returns the size of the picture in pixels: `[width, height]`.
     #[must_use]
     pub fn pixels(&self) -> [usize; 2] {
-        self.size
-            .map(|length| (length * self.scale).round().max(1.0) as usize)
+        self.size.map(|length| (length * self.scale).round().max(1.0) as usize)
     }
 
     /// Returns the characters of the picture's texts that the built-in font lacks, each once. A PNG or PDF shows them as boxes; an SVG
     /// has them as text.
     #[must_use]
     pub fn missing_glyphs(&self) -> Vec<char> {
-        let texts = self
-            .primitives
-            .iter()
-            .filter_map(|primitive| match primitive {
-                Primitive::Text(text, ..) => Some(text.as_str()),
-                _ => None,
-            });
+        let texts = self.primitives.iter().filter_map(|primitive| match primitive {
+            Primitive::Text(text, ..) => Some(text.as_str()),
+            _ => None,
+        });
         font::missing_glyphs(&texts.collect::<String>())
     }
 
@@ -137,8 +128,7 @@ impl Picture {
     pub(crate) fn text(&mut self, text: &str, at: [f64; 2], size: f64, anchor: Anchor) {
         if !text.is_empty() {
             let text = text.replace(char::is_control, " ");
-            self.primitives
-                .push(Primitive::Text(text, at, size, anchor));
+            self.primitives.push(Primitive::Text(text, at, size, anchor));
         }
     }
 
@@ -178,7 +168,6 @@ impl Picture {
             }
         }
         let corner = [across.start, down.start];
-        self.primitives
-            .push(Primitive::Raster(corner, size, pixels));
+        self.primitives.push(Primitive::Raster(corner, size, pixels));
     }
 }

@@ -80,11 +80,7 @@ impl Fill {
 
     /// Returns the colour of the fill at pixels where `x + y` is `sum`: stripes run from the lower left to the upper right.
     pub(crate) fn at(self, sum: f64) -> Rgb {
-        if sum % 10.0 < 3.0 {
-            self.stripes
-        } else {
-            self.ground
-        }
+        if sum % 10.0 < 3.0 { self.stripes } else { self.ground }
     }
 }
 
@@ -100,9 +96,7 @@ pub fn sequential(at: f64) -> Rgb {
 
 /// Returns the colour at a fraction of a diverging scale: blue at 0, white, red at 1 (ColorBrewer, RdBu).
 pub fn diverging(at: f64) -> Rgb {
-    const STOPS: [u32; 7] = [
-        0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b,
-    ];
+    const STOPS: [u32; 7] = [0x2166ac, 0x67a9cf, 0xd1e5f0, 0xf7f7f7, 0xfddbc7, 0xef8a62, 0xb2182b];
     between(&STOPS, at)
 }
 

@@ -192,10 +192,7 @@ fn set_pen(content: &mut Content, pen: Pen) {
     content.set_stroke_rgb(red, green, blue);
     content.set_line_width(pen.width as f32);
     let dashes = DASHES.map(|length| length as f32);
-    content.set_dash_pattern(
-        if pen.dashed { &dashes[..] } else { &[] }.iter().copied(),
-        0.0,
-    );
+    content.set_dash_pattern(if pen.dashed { &dashes[..] } else { &[] }.iter().copied(), 0.0);
 }
 
 fn fill(content: &mut Content, colour: Rgb) {

@@ -16,12 +16,7 @@ pub struct Area {
 
 impl Area {
     pub const fn new([left, top]: [f64; 2], [width, height]: [f64; 2]) -> Self {
-        Self {
-            left,
-            top,
-            width,
-            height,
-        }
+        Self { left, top, width, height }
     }
 
     pub fn right(&self) -> f64 {
@@ -49,11 +44,7 @@ pub struct Pen {
 
 impl Pen {
     pub const fn solid(width: f64, colour: Rgb) -> Self {
-        Self {
-            width,
-            colour,
-            dashed: false,
-        }
+        Self { width, colour, dashed: false }
     }
 }
 

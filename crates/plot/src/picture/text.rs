@@ -54,10 +54,7 @@ impl TextBlock {
     pub fn new(text: &str, largest: f64, room: f64) -> Self {
         let size = shrunk(text, largest, room);
         if fits(text, size, room) {
-            return Self {
-                lines: vec![text.to_owned()],
-                size,
-            };
+            return Self { lines: vec![text.to_owned()], size };
         }
         let mut lines: Vec<String> = Vec::new();
         let words = kept_together(text).into_iter().flat_map(|words| {
@@ -130,17 +127,9 @@ mod tests {
         assert_eq!(TextBlock::new(text, 23.0, 900.0).lines, [text]);
         assert_eq!(TextBlock::new(text, 23.0, 900.0).size, 23.0);
         let block = TextBlock::new(text, 23.0, 260.0);
-        assert_eq!(
-            (block.lines.join(" "), block.size),
-            (text.to_owned(), SMALLEST)
-        );
+        assert_eq!((block.lines.join(" "), block.size), (text.to_owned(), SMALLEST));
         assert!(block.lines.len() > 1 && block.below_first() > SMALLEST);
-        assert!(
-            block
-                .lines
-                .iter()
-                .all(|line| width(line, SMALLEST) <= 261.0)
-        );
+        assert!(block.lines.iter().all(|line| width(line, SMALLEST) <= 261.0));
         assert_eq!(TextBlock::new("", 23.0, 260.0).lines, [""]);
     }
 
@@ -151,9 +140,7 @@ mod tests {
             let lines = TextBlock::new(text, 23.0, f64::from(room)).lines;
             assert_eq!(lines.join(" "), text);
             let ends = ["taper", "=", "curvature_per_mm", "15.66"];
-            let breaks = lines
-                .iter()
-                .filter(|line| ends.iter().any(|end| line.ends_with(end)));
+            let breaks = lines.iter().filter(|line| ends.iter().any(|end| line.ends_with(end)));
             assert_eq!(breaks.count(), usize::from(room < 242), "{room}: {lines:?}");
         }
     }

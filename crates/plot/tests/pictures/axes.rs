@@ -24,29 +24,15 @@ fn degenerate_data_give_pictures_without_nan() {
     let mut plots = vec![Plot::default()];
     let kinds = [(false, false), (true, false), (false, true), (true, true)];
     for (equal_axes, logarithmic) in kinds {
-        for (one, other) in values
-            .iter()
-            .flat_map(|one| values.map(|other| (*one, other)))
-        {
+        for (one, other) in values.iter().flat_map(|one| values.map(|other| (*one, other))) {
             plots.push(Plot {
                 lines: vec![
                     line(&[], Ink::Black, Stroke::Dashed),
                     line(&[[one, other]], Ink::Blue, Stroke::Dashed),
-                    line(
-                        &[[one, one], [other, other], [one, one]],
-                        Ink::Grey,
-                        Stroke::Dashed,
-                    ),
+                    line(&[[one, one], [other, other], [one, one]], Ink::Grey, Stroke::Dashed),
                 ],
-                dots: vec![Dot {
-                    at: [other, one],
-                    ..Dot::default()
-                }],
-                discs: vec![Disc {
-                    centre: [one, one],
-                    radius: other,
-                    dark: false,
-                }],
+                dots: vec![Dot { at: [other, one], ..Dot::default() }],
+                discs: vec![Disc { centre: [one, one], radius: other, dark: false }],
                 notes: vec![Note {
                     at: [one, other],
                     to: Some([other, other]),
@@ -61,17 +47,11 @@ fn degenerate_data_give_pictures_without_nan() {
     }
     for plot in plots {
         let svg = svg(&single(plot.clone()).picture(PictureSize::Natural).unwrap());
-        assert!(
-            well_formed(&svg) && !svg.contains("NaN") && !svg.contains("inf"),
-            "{plot:?}"
-        );
+        assert!(well_formed(&svg) && !svg.contains("NaN") && !svg.contains("inf"), "{plot:?}");
         let [left, top, right, bottom] = frame(&svg);
         let places = polylines(&svg).into_iter().flat_map(|(points, _)| points);
         for [x, y] in places {
-            assert!(
-                x >= left - 9.0 && x <= right && y >= top && y <= bottom + 9.0,
-                "{plot:?}"
-            );
+            assert!(x >= left - 9.0 && x <= right && y >= top && y <= bottom + 9.0, "{plot:?}");
         }
     }
     for plots in [0, 1, 3] {
@@ -79,14 +59,9 @@ fn degenerate_data_give_pictures_without_nan() {
         let (title, columns) = (String::new(), 0);
         assert!(
             Pixels::of(
-                &Chart {
-                    title,
-                    plots,
-                    columns,
-                    ..Chart::default()
-                }
-                .picture(PictureSize::Natural)
-                .unwrap()
+                &Chart { title, plots, columns, ..Chart::default() }
+                    .picture(PictureSize::Natural)
+                    .unwrap()
             )
             .width
                 > 500
@@ -125,11 +100,7 @@ fn a_large_disc_widens_both_axes() {
     let chart = |radius: f64| {
         single(Plot {
             lines: vec![line(&[[0.0, 0.0], [100.0, 0.0]], Ink::Black, Stroke::Solid)],
-            discs: vec![Disc {
-                centre: [50.0, 30.0],
-                radius,
-                dark: false,
-            }],
+            discs: vec![Disc { centre: [50.0, 30.0], radius, dark: false }],
             equal_axes: true,
             ..Plot::default()
         })
@@ -167,31 +138,15 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     }
     // Numbers without a logarithm, and what has a size, are not there.
     let mut more = plot(&[points[0], points[1], points[2], [0.0, 1.0], [-1.0, 1e300]]);
-    more.discs = vec![Disc {
-        centre: [1e9, 1.0],
-        radius: 1e8,
-        dark: true,
-    }];
-    more.dots = vec![Dot {
-        at: [1.0, -1.0],
-        ..Dot::default()
-    }];
-    assert_eq!(
-        svg(&single(more).picture(PictureSize::Natural).unwrap()),
-        document
-    );
+    more.discs = vec![Disc { centre: [1e9, 1.0], radius: 1e8, dark: true }];
+    more.dots = vec![Dot { at: [1.0, -1.0], ..Dot::default() }];
+    assert_eq!(svg(&single(more).picture(PictureSize::Natural).unwrap()), document);
 }
 
 /// Powers of ten where there are some, and never two labels on each other.
 #[test]
 fn logarithmic_axes_have_ticks_whatever_they_span() {
-    for (from, to) in [
-        (1.0, 1.0),
-        (0.15, 5.4),
-        (6.1, 6.9),
-        (3e-12, 2e-5),
-        (1e-280, 1e280),
-    ] {
+    for (from, to) in [(1.0, 1.0), (0.15, 5.4), (6.1, 6.9), (3e-12, 2e-5), (1e-280, 1e280)] {
         let svg = svg(&single(Plot {
             lines: vec![line(&[[from, from], [to, to]], Ink::Black, Stroke::Solid)],
             logarithmic: [true; 2],

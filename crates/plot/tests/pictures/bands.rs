@@ -25,11 +25,7 @@ fn a_band_is_where_its_numbers_are() {
     };
     let (svg, picture) = both(&single(Plot {
         bands: vec![band(10.0, Shade::Light), band(5.0, Shade::Dark)],
-        lines: vec![line(
-            &[[0.0, 10.0], [40.0, 10.0]],
-            Ink::Black,
-            Stroke::Solid,
-        )],
+        lines: vec![line(&[[0.0, 10.0], [40.0, 10.0]], Ink::Black, Stroke::Solid)],
         ..Plot::default()
     }));
     let [left, top, right, bottom] = frame(&svg);

@@ -14,12 +14,8 @@ fn the_legend_has_each_name_once_and_wraps() {
         lines: names.iter().map(|name| diagonal().named(*name)).collect(),
         ..Plot::default()
     };
-    let long = [
-        "a long name that takes much room ",
-        "another one of the same kind ",
-        "stable",
-    ]
-    .map(|name| name.repeat(2));
+    let long = ["a long name that takes much room ", "another one of the same kind ", "stable"]
+        .map(|name| name.repeat(2));
     let names: Vec<&str> = long.iter().map(String::as_str).collect();
     let document =
         |names: &[&str]| svg(&single(plot(names)).picture(PictureSize::Natural).unwrap());
@@ -46,10 +42,7 @@ fn a_document_is_well_formed_whatever_the_texts() {
             lines: vec![line(&arc(), Ink::Grey, Stroke::Dashed).named(text)],
             dots: vec![Dot::default()],
             discs: vec![Disc::default()],
-            notes: vec![Note {
-                text: text.to_owned(),
-                ..Note::default()
-            }],
+            notes: vec![Note { text: text.to_owned(), ..Note::default() }],
             ..Plot::default()
         }],
         caption: vec![text.to_owned()],
@@ -60,18 +53,11 @@ fn a_document_is_well_formed_whatever_the_texts() {
     let shown = "a&lt;b &amp; &quot;c&quot;&gt; \u{2212} \u{fffd}</text>";
     assert_eq!(svg.matches(shown).count(), 7);
     for damage in ["</text>", "</svg>", "amp;", "/>"] {
-        assert!(
-            !well_formed(&svg.replacen(damage, "", 1)),
-            "without {damage}"
-        );
+        assert!(!well_formed(&svg.replacen(damage, "", 1)), "without {damage}");
     }
-    let numbers = svg
-        .split(['"', ' ', ','])
-        .filter(|part| part.parse::<f64>().is_ok());
+    let numbers = svg.split(['"', ' ', ',']).filter(|part| part.parse::<f64>().is_ok());
     for number in numbers {
-        let decimals = number
-            .split_once('.')
-            .map_or(0, |(_, decimals)| decimals.len());
+        let decimals = number.split_once('.').map_or(0, |(_, decimals)| decimals.len());
         assert!(decimals <= 2 && number != "-0", "{number}");
     }
 }
@@ -92,9 +78,7 @@ fn plots_stand_in_rows() {
     let (svg, picture) = both(&chart);
     let size = format!("width=\"{}\" height=\"{}\"", picture.width, picture.height);
     assert!(svg.contains(&size), "{size}");
-    let lines = polylines(&svg)
-        .into_iter()
-        .filter(|(points, _)| points.len() == 5);
+    let lines = polylines(&svg).into_iter().filter(|(points, _)| points.len() == 5);
     let frames: Vec<[f64; 2]> = lines.map(|(points, _)| points[0]).collect();
     assert_eq!(frames.len(), 8);
     for (place, frame) in frames.iter().enumerate() {
@@ -133,12 +117,9 @@ fn characters_that_the_font_lacks_are_named() {
     assert!(missing_glyphs("\u{b5}N \u{2264} \u{3b8}p\n").is_empty());
     let title = "\u{9f20} hair \u{9f20}\u{1f400}";
     assert_eq!(missing_glyphs(title), ['\u{9f20}', '\u{1f400}']);
-    let picture = single(Plot {
-        title: title.to_owned(),
-        ..Plot::default()
-    })
-    .picture(PictureSize::Natural)
-    .unwrap();
+    let picture = single(Plot { title: title.to_owned(), ..Plot::default() })
+        .picture(PictureSize::Natural)
+        .unwrap();
     assert_eq!(picture.missing_glyphs(), ['\u{9f20}', '\u{1f400}']);
     let svg = svg(&picture);
     assert!(svg.contains(title) && svg.contains("sans-serif"));

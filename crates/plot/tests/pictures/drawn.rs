@@ -28,9 +28,7 @@ impl Pixels {
     }
 
     pub fn decode(png: &[u8]) -> Self {
-        let mut reader = png::Decoder::new(std::io::Cursor::new(png))
-            .read_info()
-            .unwrap();
+        let mut reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
         let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
         let info = reader.next_frame(&mut bytes).unwrap();
         assert_eq!(info.color_type, png::ColorType::Rgb);
@@ -56,13 +54,10 @@ pub fn polylines(svg: &str) -> Vec<(Vec<[f64; 2]>, bool)> {
     let points = |tag: &str| {
         let list = tag.split('"').nth(1).unwrap();
         let pairs = list.split(' ').map(|pair| pair.split_once(',').unwrap());
-        pairs
-            .map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()])
-            .collect()
+        pairs.map(|(x, y)| [x.parse().unwrap(), y.parse().unwrap()]).collect()
     };
     let tags = svg.lines().filter(|line| line.starts_with("<polyline"));
-    tags.map(|tag| (points(tag), tag.contains("stroke-dasharray")))
-        .collect()
+    tags.map(|tag| (points(tag), tag.contains("stroke-dasharray"))).collect()
 }
 
 /// The rasters of a document: left, top, width and height, and the pixels.

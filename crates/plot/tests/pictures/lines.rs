@@ -7,10 +7,8 @@ use whiskmap_plot::{Disc, Dot, Ink, Line, PictureSize, Plot, Stroke};
 #[test]
 fn a_line_is_where_its_numbers_are() {
     let corners = [[-20.0, 3.0], [30.0, 3.0], [80.0, 8.0]];
-    let chart = single(Plot {
-        lines: vec![line(&corners, Ink::Blue, Stroke::Solid)],
-        ..Plot::default()
-    });
+    let chart =
+        single(Plot { lines: vec![line(&corners, Ink::Blue, Stroke::Solid)], ..Plot::default() });
     let (svg, picture) = both(&chart);
     let [left, top, right, bottom] = frame(&svg);
     assert_eq!([right - left, bottom - top], [1280.0, 880.0]);
@@ -20,13 +18,7 @@ fn a_line_is_where_its_numbers_are() {
         let up = ((y - 3.0) / 5.0 + 0.04) / 1.08;
         [left + 1280.0 * across, bottom - 880.0 * up]
     };
-    for [x, y] in [
-        [-20.0, 3.0],
-        [5.0, 3.0],
-        [40.0, 4.0],
-        [60.0, 6.0],
-        [80.0, 8.0],
-    ] {
+    for [x, y] in [[-20.0, 3.0], [5.0, 3.0], [40.0, 4.0], [60.0, 6.0], [80.0, 8.0]] {
         let at = place(x, y);
         assert_eq!(picture.at(at), BLUE, "{x}, {y}");
         for away in [-7.0, 7.0] {
@@ -54,10 +46,7 @@ fn dashes_are_even_along_a_curve_and_solid_lines_have_none() {
         assert_eq!(*dashed, stroke == Stroke::Dashed);
         assert_eq!(points.len(), 1001);
         // A thousand points along some 1280 pixels: how many in a row are blue, how many white.
-        let blue: Vec<bool> = points
-            .iter()
-            .map(|point| picture.at(*point)[0] < 0x8d)
-            .collect();
+        let blue: Vec<bool> = points.iter().map(|point| picture.at(*point)[0] < 0x8d).collect();
         let runs: Vec<_> = blue.chunk_by(|one, next| one == next).collect();
         if stroke == Stroke::Solid {
             assert!(runs.len() == 1 && blue[0]);
@@ -69,10 +58,7 @@ fn dashes_are_even_along_a_curve_and_solid_lines_have_none() {
             let length = run.len() as f64 * pixels;
             // 14 on and 10 off; the round ends move 3 from the gap to the dash.
             let expected = if run[0] { 17.0 } else { 7.0 };
-            assert!(
-                (length - expected).abs() < 2.6,
-                "{length} is not {expected}"
-            );
+            assert!((length - expected).abs() < 2.6, "{length} is not {expected}");
         }
     }
 }
@@ -90,10 +76,7 @@ fn points_that_are_not_finite_break_a_line() {
     ];
     let chart = single(Plot {
         lines: vec![line(&points, Ink::Blue, Stroke::Solid)],
-        dots: vec![Dot {
-            at: [f64::NAN, 0.0],
-            ..Dot::default()
-        }],
+        dots: vec![Dot { at: [f64::NAN, 0.0], ..Dot::default() }],
         ..Plot::default()
     });
     let svg = svg(&chart.picture(PictureSize::Natural).unwrap());
@@ -114,21 +97,10 @@ fn points_that_are_not_finite_break_a_line() {
 fn dots_and_discs_are_drawn_and_axes_are_equal() {
     let chart = single(Plot {
         lines: vec![line(&[[0.0, 0.0], [10.0, 0.0]], Ink::Grey, Stroke::Solid)],
-        dots: vec![Dot {
-            at: [10.0, 0.0],
-            ..Dot::default()
-        }],
+        dots: vec![Dot { at: [10.0, 0.0], ..Dot::default() }],
         discs: vec![
-            Disc {
-                centre: [4.0, 3.0],
-                radius: 1.0,
-                dark: false,
-            },
-            Disc {
-                centre: [8.0, 3.0],
-                radius: 1e-9,
-                dark: false,
-            },
+            Disc { centre: [4.0, 3.0], radius: 1.0, dark: false },
+            Disc { centre: [8.0, 3.0], radius: 1e-9, dark: false },
         ],
         equal_axes: true,
         ..Plot::default()
@@ -144,10 +116,7 @@ fn dots_and_discs_are_drawn_and_axes_are_equal() {
     for angle in 0..12 {
         let (sine, cosine) = (f64::from(angle) * 0.5).sin_cos();
         let around = |radius: f64| picture.at(place(4.0 + radius * cosine, 3.0 + radius * sine));
-        assert_eq!(
-            [around(0.0), around(0.96), around(1.04)],
-            [BLANK, BLANK, WHITE]
-        );
+        assert_eq!([around(0.0), around(0.96), around(1.04)], [BLANK, BLANK, WHITE]);
         assert!(around(1.0)[0] < 0xa0, "the outline");
     }
     let [x, y] = place(8.0, 3.0);
@@ -191,19 +160,12 @@ fn a_line_looks_the_same_however_many_points_it_has() {
         let [from, to] = [corners[part as usize], corners[(part as usize + 1).min(2)]];
         [0, 1].map(|axis| from[axis] + part.fract() * (to[axis] - from[axis]))
     };
-    let many: Vec<_> = (0..=4000)
-        .map(|step| at(f64::from(step) / 2000.0))
-        .collect();
+    let many: Vec<_> = (0..=4000).map(|step| at(f64::from(step) / 2000.0)).collect();
     for stroke in [Stroke::Solid, Stroke::Dashed] {
         let [few, many] = [&corners[..], &many].map(|points| {
             let lines = vec![line(points, Ink::Black, stroke)];
             Pixels::of(
-                &single(Plot {
-                    lines,
-                    ..Plot::default()
-                })
-                .picture(PictureSize::Natural)
-                .unwrap(),
+                &single(Plot { lines, ..Plot::default() }).picture(PictureSize::Natural).unwrap(),
             )
         });
         let pairs = few.pixels.iter().zip(&many.pixels);
@@ -238,36 +200,20 @@ fn an_open_dot_is_a_ring_and_so_it_is_in_the_legend() {
 /// A bar shorter than its dot is seen on it: drawn after the dot, with a white rim.
 #[test]
 fn bars_are_drawn_over_dots() {
-    let bar = |half: f64| {
-        line(
-            &[[5.0 - half, 0.5], [5.0 + half, 0.5]],
-            Ink::Blue,
-            Stroke::Solid,
-        )
-    };
+    let bar = |half: f64| line(&[[5.0 - half, 0.5], [5.0 + half, 0.5]], Ink::Blue, Stroke::Solid);
     let chart = |bars: Vec<Line>| {
         single(Plot {
             lines: vec![line(&[[0.0, 0.0], [10.0, 1.0]], Ink::Grey, Stroke::Solid)],
-            dots: vec![Dot {
-                at: [5.0, 0.5],
-                ink: Ink::Blue,
-                ..Dot::default()
-            }],
+            dots: vec![Dot { at: [5.0, 0.5], ink: Ink::Blue, ..Dot::default() }],
             bars,
             ..Plot::default()
         })
     };
     let after_dot = |bars| {
         let svg = svg(&chart(bars).picture(PictureSize::Natural).unwrap());
-        svg[svg.find("<circle").unwrap()..]
-            .matches("<polyline")
-            .count()
+        svg[svg.find("<circle").unwrap()..].matches("<polyline").count()
     };
-    assert_eq!(
-        after_dot(vec![bar(0.02)]),
-        after_dot(Vec::new()) + 2,
-        "the rim and the bar"
-    );
+    assert_eq!(after_dot(vec![bar(0.02)]), after_dot(Vec::new()) + 2, "the rim and the bar");
     // A bar beyond all other contents widens the axis.
     let pixels = |bars| Pixels::of(&chart(bars).picture(PictureSize::Natural).unwrap()).pixels;
     assert!(pixels(vec![bar(20.0)]) != pixels(Vec::new()));

@@ -30,7 +30,5 @@ fn both(chart: &Chart) -> (String, Pixels) {
 /// A quarter of a circle of radius 100 in a thousand pieces.
 fn arc() -> Vec<[f64; 2]> {
     let angle = |step: i32| f64::from(step) / 1000.0 * std::f64::consts::FRAC_PI_2;
-    (0..=1000)
-        .map(|step| [100.0 * angle(step).cos(), 100.0 * angle(step).sin()])
-        .collect()
+    (0..=1000).map(|step| [100.0 * angle(step).cos(), 100.0 * angle(step).sin()]).collect()
 }

@@ -18,30 +18,22 @@ fn coded(x: &[f64], y: &[f64]) -> HeatMap {
         x: CellAxis::new("angle (deg)", x),
         y: CellAxis::new("distance (mm)", y),
         panel_axes: [None, None],
-        shading: Shading::Codes {
-            fills: fills.into(),
-            other: Fill::BLANK,
-        },
+        shading: Shading::Codes { fills: fills.into(), other: Fill::BLANK },
         legend: vec![LegendEntry::swatch(Fill::plain(RED), "red")],
         regions: None,
     }
 }
 
 fn drawn(map: &HeatMap, mut panel: impl FnMut(usize) -> PanelCells) -> Picture {
-    map.picture(PictureSize::Natural, |index| {
-        Ok::<_, SizeError>(panel(index))
-    })
-    .unwrap()
+    map.picture(PictureSize::Natural, |index| Ok::<_, SizeError>(panel(index))).unwrap()
 }
 
 #[test]
 fn cells_are_where_their_values_are() {
     // Midpoints between unequal values: the cells are 45, 35 and 25 wide, from -72.5 to 32.5.
     let map = coded(&[-50.0, -5.0, 20.0], &[5.0, 15.0]);
-    let cells = PanelCells {
-        values: vec![0.0, 1.0, 2.0, 1.0, f64::NAN, 0.0],
-        ..PanelCells::default()
-    };
+    let cells =
+        PanelCells { values: vec![0.0, 1.0, 2.0, 1.0, f64::NAN, 0.0], ..PanelCells::default() };
     let pixels = Pixels::of(&drawn(&map, |_| cells.clone()));
     for (x, [lower, upper]) in [
         (-72.0, [RED, GREEN]),
@@ -91,13 +83,7 @@ fn hatched_cells_have_stripes_and_curves_run_where_their_points_are() {
         assert_eq!(body(&pixels, x / 4.0, y / 4.0), BLACK, "{x}, {y}");
     }
     let curves = polylines(&svg(&picture));
-    assert!(
-        curves
-            .iter()
-            .filter(|(points, _)| points.len() == 2)
-            .count()
-            > 1
-    );
+    assert!(curves.iter().filter(|(points, _)| points.len() == 2).count() > 1);
 }
 
 #[test]
@@ -108,10 +94,7 @@ fn panels_stand_along_their_axes() {
     let mut drawn_panels = Vec::new();
     let picture = drawn(&map, |index| {
         drawn_panels.push(index);
-        PanelCells {
-            values: vec![[0.0, 1.0, 2.0, 0.0][index]; 4],
-            ..PanelCells::default()
-        }
+        PanelCells { values: vec![[0.0, 1.0, 2.0, 0.0][index]; 4], ..PanelCells::default() }
     });
     assert_eq!(drawn_panels, [0, 1, 2, 3]);
     let pixels = Pixels::of(&picture);
@@ -128,9 +111,8 @@ fn panels_stand_along_their_axes() {
     ] {
         assert!(svg.contains(text), "{text}");
     }
-    let narrow = map.picture(PictureSize::Width(700), |_| {
-        Ok::<_, SizeError>(PanelCells::default())
-    });
+    let narrow =
+        map.picture(PictureSize::Width(700), |_| Ok::<_, SizeError>(PanelCells::default()));
     assert_eq!(narrow.unwrap().pixels()[0], 700);
 }
 
@@ -144,10 +126,7 @@ fn panels_along_one_axis_fill_rows() {
         let mut drawn_panels = Vec::new();
         let picture = drawn(&map, |index| {
             drawn_panels.push(index);
-            PanelCells {
-                values: vec![[0.0, 1.0][index % 2]; 4],
-                ..PanelCells::default()
-            }
+            PanelCells { values: vec![[0.0, 1.0][index % 2]; 4], ..PanelCells::default() }
         });
         assert_eq!(drawn_panels, [0, 1, 2, 3, 4, 5, 6]);
         let svg = svg(&picture);
@@ -156,10 +135,7 @@ fn panels_along_one_axis_fill_rows() {
         let panels = &rasters[rasters.len() - 7..];
         let column = |i: usize| (panels[i][0], panels[i][1]);
         assert!((0..7).all(|i| column(i).0 == column(i % 3).0), "{panels:?}");
-        assert!(
-            (0..7).all(|i| column(i).1 == column(i / 3 * 3).1),
-            "{panels:?}"
-        );
+        assert!((0..7).all(|i| column(i).1 == column(i / 3 * 3).1), "{panels:?}");
         assert!(column(0).1 < column(3).1 && column(0).0 < column(1).0);
         // Panels take most of the width.
         let [width, _] = picture.pixels();

@@ -33,10 +33,7 @@ fn drawn(values: &[f64], options: ScaleOptions) -> Result<Picture, ScaleError> {
     };
     let values = values.to_vec();
     let picture = map.picture(PictureSize::Natural, |_| {
-        Ok::<_, SizeError>(PanelCells {
-            values: values.clone(),
-            ..PanelCells::default()
-        })
+        Ok::<_, SizeError>(PanelCells { values: values.clone(), ..PanelCells::default() })
     });
     Ok(picture.unwrap())
 }
@@ -52,24 +49,15 @@ fn a_scale_is_white_at_zero_when_both_signs_occur() {
     let [negative, zero, positive] = colours(&drawn(&[-1.0, 0.0, 4.0], force()).unwrap());
     assert_eq!(zero, [0xf7; 3]);
     assert_eq!(positive, [0xb2, 0x18, 0x2b]);
-    assert!(
-        negative[2] > negative[0] && negative[0] > 0xb0,
-        "a quarter of the way to blue"
-    );
+    assert!(negative[2] > negative[0] && negative[0] > 0xb0, "a quarter of the way to blue");
     let [least, none, most] = colours(&drawn(&[1.0, f64::INFINITY, 4.0], force()).unwrap());
     assert_eq!(none, BLANK);
-    assert!(
-        least[2] > least[1] && most[1] > most[2],
-        "viridis: {least:?} to {most:?}"
-    );
+    assert!(least[2] > least[1] && most[1] > most[2], "viridis: {least:?} to {most:?}");
 }
 
 #[test]
 fn a_logarithmic_scale_has_equal_ratios_at_equal_distances() {
-    let log = || ScaleOptions {
-        log: Some(true),
-        ..force()
-    };
+    let log = || ScaleOptions { log: Some(true), ..force() };
     let linear = drawn(&[0.0, 5.0, 10.0], force()).unwrap();
     let decades = drawn(&[1.0, 100.0, 1e4], log()).unwrap();
     assert_eq!(colours(&decades), colours(&linear));
@@ -86,10 +74,7 @@ fn a_logarithmic_scale_has_equal_ratios_at_equal_distances() {
 fn a_logarithmic_scale_starts_at_the_1st_percentile() {
     let zeros = [0.0; 10].into_iter().chain([1e-30; 3]);
     let values: Vec<f64> = zeros.chain((13..400).map(f64::from)).collect();
-    let log = ScaleOptions {
-        log: Some(true),
-        ..force()
-    };
+    let log = ScaleOptions { log: Some(true), ..force() };
     let svg = svg(&drawn(&values, log).unwrap());
     for name in ["\u{2264} 0 (cells: 10)", "> 0, below the scale (cells: 3)"] {
         let name = name.replace('>', "&gt;");
@@ -103,11 +88,7 @@ fn a_logarithmic_scale_starts_at_the_1st_percentile() {
 /// The powers of ten between the ends are few, whatever the ends and the unit.
 #[test]
 fn a_logarithmic_scale_takes_all_positive_numbers() {
-    let options = ScaleOptions {
-        log: Some(true),
-        range: Some([1e-320, 1e308]),
-        ..force()
-    };
+    let options = ScaleOptions { log: Some(true), range: Some([1e-320, 1e308]), ..force() };
     let svg = svg(&drawn(&[1.0, 100.0, 1e4], options).unwrap());
     assert!(svg.contains(">force (N)<") && !svg.contains("NaN") && !svg.contains("inf"));
 }
@@ -116,20 +97,13 @@ fn a_logarithmic_scale_takes_all_positive_numbers() {
 fn values_beyond_the_range_take_the_colours_of_its_ends() {
     let ranged = |values: [f64; 3], range, log| {
         let range = Some(range);
-        let options = ScaleOptions {
-            log: Some(log),
-            range,
-            ..force()
-        };
+        let options = ScaleOptions { log: Some(log), range, ..force() };
         colours(&drawn(&values, options).unwrap())
     };
     for log in [false, true] {
         let [low, _, high] = ranged([1.0, 2.0, 100.0], [1.0, 100.0], log);
         assert_ne!(low, high);
-        assert_eq!(
-            ranged([0.5, 1e3, 1e30], [1.0, 100.0], log),
-            [low, high, high]
-        );
+        assert_eq!(ranged([0.5, 1e3, 1e30], [1.0, 100.0], log), [low, high, high]);
     }
     let [_, white, red] = ranged([-9.0, 0.0, 9.0], [-1.0, 4.0], false);
     assert_eq!([white, red], [[0xf7; 3], [0xb2, 0x18, 0x2b]]);
@@ -138,11 +112,7 @@ fn values_beyond_the_range_take_the_colours_of_its_ends() {
 #[test]
 fn impossible_scales_are_refused() {
     let refused = |values: [f64; 3], range, log, what: &str| {
-        let options = ScaleOptions {
-            log: Some(log),
-            range,
-            ..force()
-        };
+        let options = ScaleOptions { log: Some(log), range, ..force() };
         let error = drawn(&values, options).unwrap_err();
         assert!(error.to_string().contains(what), "{error}");
     };
@@ -174,10 +144,7 @@ fn a_colour_bar_chooses_the_unit_that_suits_it() {
         let svg = svg(&drawn(&values, force()).unwrap());
         assert!(svg.contains(label) && svg.contains(tick), "{label} {tick}");
     }
-    let counts = ScaleOptions {
-        whole: true,
-        ..force()
-    };
+    let counts = ScaleOptions { whole: true, ..force() };
     let svg = svg(&drawn(&[0.0, 1.0, 2.0], counts).unwrap());
     assert!(svg.contains(">1<") && !svg.contains(">0.5<"), "whole ticks");
 }
@@ -186,19 +153,9 @@ fn a_colour_bar_chooses_the_unit_that_suits_it() {
 #[test]
 fn a_scale_becomes_logarithmic_by_itself_over_two_decades() {
     let is_log = |values: &[f64], range| {
-        let options = ScaleOptions {
-            log: None,
-            range,
-            ..force()
-        };
+        let options = ScaleOptions { log: None, range, ..force() };
         let document = |log| {
-            let picture = drawn(
-                values,
-                ScaleOptions {
-                    log,
-                    ..options.clone()
-                },
-            );
+            let picture = drawn(values, ScaleOptions { log, ..options.clone() });
             picture.ok().map(|picture| svg(&picture))
         };
         let chosen = document(None);

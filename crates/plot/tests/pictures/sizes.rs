@@ -8,11 +8,7 @@ use whiskmap_plot::{
 };
 
 fn print(width_mm: f64, height_mm: Option<f64>) -> PictureSize {
-    PictureSize::Print(PrintSize {
-        width_mm,
-        height_mm,
-        dpi: 300.0,
-    })
+    PictureSize::Print(PrintSize { width_mm, height_mm, dpi: 300.0 })
 }
 
 fn chart() -> Chart {
@@ -22,10 +18,7 @@ fn chart() -> Chart {
         lines: vec![line(&arc(), Ink::Black, Stroke::Solid).named("x".repeat(90))],
         ..Plot::default()
     };
-    Chart::single(
-        "A title that is far too long for one line of a narrow picture",
-        plot,
-    )
+    Chart::single("A title that is far too long for one line of a narrow picture", plot)
 }
 
 fn heat_map() -> HeatMap {
@@ -49,33 +42,20 @@ fn heat_map() -> HeatMap {
 
 /// A chart and a heat map of one size.
 fn both(size: PictureSize) -> [Result<Picture, SizeError>; 2] {
-    let cells = || PanelCells {
-        values: vec![1.0, 2.0],
-        ..PanelCells::default()
-    };
-    [
-        chart().picture(size),
-        heat_map().picture(size, |_| Ok(cells())),
-    ]
+    let cells = || PanelCells { values: vec![1.0, 2.0], ..PanelCells::default() };
+    [chart().picture(size), heat_map().picture(size, |_| Ok(cells()))]
 }
 
 /// The numbers after an attribute in a document.
 fn numbers(document: &str, attribute: &str) -> Vec<f64> {
     let parts = document.split(attribute).skip(1);
-    parts
-        .map(|part| part.split('"').next().unwrap().parse().unwrap())
-        .collect()
+    parts.map(|part| part.split('"').next().unwrap().parse().unwrap()).collect()
 }
 
 /// 7 pt are 7/72 inch; an SVG of 85 mm has 85/25.4 inch over the width of its view box.
 #[test]
 fn text_has_at_least_7_pt_on_paper() {
-    for (width, height) in [
-        (85.0, None),
-        (85.0, Some(70.0)),
-        (180.0, None),
-        (60.0, Some(120.0)),
-    ] {
+    for (width, height) in [(85.0, None), (85.0, Some(70.0)), (180.0, None), (60.0, Some(120.0))] {
         for picture in both(print(width, height)) {
             let document = svg(&picture.unwrap());
             let view: Vec<f64> = document
@@ -89,18 +69,12 @@ fn text_has_at_least_7_pt_on_paper() {
                 .map(|side| side.parse().unwrap())
                 .collect();
             let points = width / 25.4 * 72.0 / view[0];
-            let sizes = numbers(
-                &document.replace("<tspan font-size", "<tspan"),
-                "font-size=\"",
-            );
+            let sizes = numbers(&document.replace("<tspan font-size", "<tspan"), "font-size=\"");
             let least = sizes.iter().copied().fold(f64::INFINITY, f64::min) * points;
             assert!(sizes.len() > 6 && least > 6.999, "{width} mm: {least} pt");
             assert!(document.contains(&format!(" width=\"{width}mm\"")));
             if let Some(height) = height {
-                assert!(
-                    document.contains(&format!(" height=\"{height}mm\"")),
-                    "{document}"
-                );
+                assert!(document.contains(&format!(" height=\"{height}mm\"")), "{document}");
             }
             let [left, top, right, bottom] = frame(&document);
             assert!(left > 0.0 && right < view[0] && top > 0.0 && bottom < view[1]);
@@ -144,14 +118,9 @@ fn a_png_has_the_pixels_and_the_density_of_its_size() {
         let picture = picture.unwrap();
         assert_eq!(picture.pixels(), [1004, 709]);
         let png = picture.encode(PictureFormat::Png).unwrap();
-        let reader = png::Decoder::new(std::io::Cursor::new(png))
-            .read_info()
-            .unwrap();
+        let reader = png::Decoder::new(std::io::Cursor::new(png)).read_info().unwrap();
         let density = reader.info().pixel_dims.unwrap();
-        assert_eq!(
-            (density.xppu, density.yppu, density.unit),
-            (11811, 11811, png::Unit::Meter)
-        );
+        assert_eq!((density.xppu, density.yppu, density.unit), (11811, 11811, png::Unit::Meter));
     }
 }
 
@@ -191,9 +160,7 @@ fn a_pdf_has_one_page_of_the_size() {
             .collect();
         let expected = [0.0, 0.0, 85.0, 60.0].map(|mm| mm / 25.4 * 72.0);
         assert!(
-            size.iter()
-                .zip(expected)
-                .all(|(one, other)| (one - other).abs() < 1e-3),
+            size.iter().zip(expected).all(|(one, other)| (one - other).abs() < 1e-3),
             "{size:?}"
         );
         assert!(

@@ -30,11 +30,7 @@ fn whisker_points(
     whisker: &'static str,
     points: &[[f64; 2]],
 ) -> impl Iterator<Item = WhiskerPoint> {
-    let point = move |&[x_mm, y_mm]: &[f64; 2]| WhiskerPoint {
-        whisker,
-        x_mm,
-        y_mm,
-    };
+    let point = move |&[x_mm, y_mm]: &[f64; 2]| WhiskerPoint { whisker, x_mm, y_mm };
     points.iter().map(point)
 }
 
@@ -51,20 +47,12 @@ pub fn fig1() -> Result<Figure, NoState> {
 
 /// A drawing without axes.
 fn drawing(title: &str) -> Plot {
-    Plot {
-        title: title.to_owned(),
-        equal_axes: true,
-        bare: true,
-        ..Plot::default()
-    }
+    Plot { title: title.to_owned(), equal_axes: true, bare: true, ..Plot::default() }
 }
 
 /// A: the truncated cone, and the perfect cone that it is a part of.
 fn cone() -> FigurePanel {
-    let straight = Whisker {
-        curvature: None,
-        ..FIG5_LEFT
-    };
+    let straight = Whisker { curvature: None, ..FIG5_LEFT };
     let sections = sections(&straight, 2);
     let tip = straight.length_mm;
     let length = tip / (1.0 - straight.tip_radius_um / straight.base_radius_um);
@@ -73,9 +61,8 @@ fn cone() -> FigurePanel {
     let virtual_tip = vec![[tip, at_tip], [length, 0.0], [tip, -at_tip]];
     let below =
         |y: f64, end: f64, words: &str| extent([0.0, -at_base - y], [end, -at_base - y], words);
-    let mut plot = drawing(&format!(
-        "a truncated cone; radii drawn {MAGNIFIED} times as large as lengths"
-    ));
+    let mut plot =
+        drawing(&format!("a truncated cone; radii drawn {MAGNIFIED} times as large as lengths"));
     plot.lines = vec![
         Line::new(outline(&sections), Ink::Black, Stroke::Solid),
         Line::new(virtual_tip, Ink::Grey, Stroke::Dashed),
@@ -122,17 +109,11 @@ fn sides() -> Result<FigurePanel, NoState> {
         let path = [0.0, -side.sign() * 0.35].map(|turn| seen.to_angle() + turn);
         let path = moved(&arc(seen.length(), path));
         let tip = path.len() - 1;
-        plot.notes
-            .push(Note::arrow(path[tip - 1], path[tip], "", Ink::Grey));
+        plot.notes.push(Note::arrow(path[tip - 1], path[tip], "", Ink::Grey));
         plot.notes.push(Note::text([start + 4.0, 4.0], words));
         plot.lines.push(Line::new(path, Ink::Grey, Stroke::Solid));
-        plot.lines
-            .push(Line::new(moved(&points), Ink::Black, Stroke::Solid));
-        plot.discs.push(Disc {
-            centre: moved(&[pole])[0],
-            radius: POLE.radius_mm,
-            dark: true,
-        });
+        plot.lines.push(Line::new(moved(&points), Ink::Black, Stroke::Solid));
+        plot.discs.push(Disc { centre: moved(&[pole])[0], radius: POLE.radius_mm, dark: true });
     }
     Ok(FigurePanel::new("C", plot, rows))
 }

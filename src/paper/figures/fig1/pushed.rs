@@ -26,10 +26,7 @@ impl PushedWhisker {
         let branch = StableBranch::new(&CONE, &POLE, Side::Cb, TOUCH_MM)?;
         let state = branch.state(PUSH_DEG.to_radians())?;
         let shape = branch.shape(&state, POINTS);
-        let at = shape
-            .points
-            .iter()
-            .find(|point| point.part == WhiskerPart::Contact);
+        let at = shape.points.iter().find(|point| point.part == WhiskerPart::Contact);
         Ok(Self {
             contact: at.copied().unwrap_or(shape.points[0]),
             at_rest: branch.at_rest(POINTS),
@@ -44,11 +41,7 @@ impl PushedWhisker {
     }
 
     fn pole(&self, dark: bool) -> Disc {
-        Disc {
-            centre: self.shape.pole_mm,
-            radius: self.shape.pole_radius_mm,
-            dark,
-        }
+        Disc { centre: self.shape.pole_mm, radius: self.shape.pole_radius_mm, dark }
     }
 }
 
@@ -79,10 +72,7 @@ pub fn contact() -> Result<FigurePanel, NoState> {
         grey(vec![base, at], Stroke::Solid),
         Line::new(pushed.points(), Ink::Black, Stroke::Solid),
     ];
-    let dot = |at| Dot {
-        at,
-        ..Dot::default()
-    };
+    let dot = |at| Dot { at, ..Dot::default() };
     plot.dots = vec![dot(base), dot(middle)];
     let normal = angle + std::f64::consts::FRAC_PI_2;
     plot.notes = vec![
@@ -128,22 +118,13 @@ pub fn push_angle() -> Result<FigurePanel, NoState> {
     let distance = pushed.distance_mm / CONE.length_mm;
     let virtual_at = to_mm(rest.point_at_distance(distance));
     let virtual_pole = to_mm(rest.pole_at_distance(distance));
-    let virtual_whisker: Vec<[f64; 2]> = pushed
-        .at_rest
-        .iter()
-        .map(|point| turn.rotate(DVec2::from(*point)).to_array())
-        .collect();
+    let virtual_whisker: Vec<[f64; 2]> =
+        pushed.at_rest.iter().map(|point| turn.rotate(DVec2::from(*point)).to_array()).collect();
     let at = [pushed.contact.x_mm, pushed.contact.y_mm];
     let [real, other] = [at, virtual_at].map(|at| DVec2::from(at).to_angle());
 
     let mut plot = drawing("the push angle \u{3b8}_{p} between lines of equal length d");
-    plot.discs = vec![
-        pushed.pole(true),
-        Disc {
-            centre: virtual_pole,
-            ..pushed.pole(false)
-        },
-    ];
+    plot.discs = vec![pushed.pole(true), Disc { centre: virtual_pole, ..pushed.pole(false) }];
     let deflected = pushed.points();
     let rows = whisker_points("deflected", &deflected)
         .chain(whisker_points("undeflected", &pushed.at_rest))

@@ -2,11 +2,7 @@
 //!
 //! Lanes fill two registers: operations wait for their operands most of the time, so two registers take hardly longer than one.
 
-#[cfg(any(
-    target_arch = "aarch64",
-    target_arch = "wasm32",
-    target_arch = "x86_64"
-))]
+#[cfg(any(target_arch = "aarch64", target_arch = "wasm32", target_arch = "x86_64"))]
 #[macro_use]
 mod registers;
 

@@ -88,16 +88,9 @@ impl ArcCurve {
     }
 
     fn new(curvature: ArcCurvature) -> Self {
-        let series = ArcSeries::new(
-            curvature.sharpest(),
-            |s| curvature.around(s),
-            |s| curvature.angle(s),
-        );
-        Self {
-            curvature,
-            tip: series.at(1.0),
-            series,
-        }
+        let series =
+            ArcSeries::new(curvature.sharpest(), |s| curvature.around(s), |s| curvature.angle(s));
+        Self { curvature, tip: series.at(1.0), series }
     }
 
     /// Returns the curvature of the curve at arclength `s` (whisker lengths), in radians per whisker length; 0 beyond the tip.
@@ -141,10 +134,7 @@ impl ArcCurve {
         let [k0, k1] = match &self.curvature {
             ArcCurvature::Spiral(_) => by.spiral,
             ArcCurvature::Polynomial(_) => {
-                return CurveDerivative {
-                    point: DVec2::ZERO,
-                    angle: 0.0,
-                };
+                return CurveDerivative { point: DVec2::ZERO, angle: 0.0 };
             }
         };
         let angle = |s: f64| s * (0.5 * k1).mul_add(s, k0);
@@ -161,10 +151,8 @@ impl ArcCurve {
     pub fn arclength_of_chord(&self, chord: f64) -> f64 {
         let reach = self.tip.0.length();
         // The function is the chord less the length, which falls.
-        let bracket = Bracket {
-            below: if chord < reach { 1.0 } else { chord + 1.0 },
-            above: chord,
-        };
+        let bracket =
+            Bracket { below: if chord < reach { 1.0 } else { chord + 1.0 }, above: chord };
         let newton = |s| {
             let (point, tangent) = self.at_arclength(s);
             let length = point.length();

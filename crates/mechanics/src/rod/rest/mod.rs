@@ -58,11 +58,7 @@ impl Rest {
     #[must_use]
     #[inline(always)]
     pub fn parabola_tangent(rod: &Rod, s: f64) -> DVec2 {
-        let slope = if rod.bend == 0.0 {
-            rod.slope
-        } else {
-            Parabola::new(rod).slope_at(s)
-        };
+        let slope = if rod.bend == 0.0 { rod.slope } else { Parabola::new(rod).slope_at(s) };
         let cos = 1.0 / (1.0 + slope * slope).sqrt();
         DVec2::new(cos, slope * cos)
     }
@@ -130,10 +126,8 @@ impl Rest {
     #[must_use]
     pub fn distance_of_pole(&self, pole_distance: f64) -> f64 {
         let radius = self.pole.abs();
-        let bracket = Bracket {
-            below: (pole_distance - radius).max(0.0),
-            above: pole_distance + radius,
-        };
+        let bracket =
+            Bracket { below: (pole_distance - radius).max(0.0), above: pole_distance + radius };
         bracket.bisect(|distance| self.pole_at_distance(distance).length() - pole_distance)
     }
 }

@@ -30,11 +30,7 @@ pub struct Parabola {
 impl Parabola {
     /// Computes the parabola at rest of `rod`.
     pub fn new(rod: &Rod) -> Self {
-        Self {
-            bend: rod.bend,
-            slope: rod.slope,
-            base: DVec2::new(1.0, rod.slope).normalize(),
-        }
+        Self { bend: rod.bend, slope: rod.slope, base: DVec2::new(1.0, rod.slope).normalize() }
     }
 
     /// Returns the slope of the parabola in its own frame at arclength `s` (whisker lengths), dimensionless.
@@ -120,10 +116,7 @@ impl Parabola {
             let rise = 2.0 * self.bend * chord;
             return chord * (2.0 / (1.0 + (1.0 + rise * rise).sqrt())).sqrt();
         }
-        let bracket = Bracket {
-            below: 0.0,
-            above: chord,
-        };
+        let bracket = Bracket { below: 0.0, above: chord };
         let most = self.bend * chord + self.slope;
         let start = chord / (1.0 + most * most).sqrt();
         let halley = |x: f64| {

@@ -37,13 +37,11 @@ impl<'a> Block<'a> {
             return compute(&self.conditions);
         }
         let mut outputs = [A::default(); WIDTH];
-        for (conditions, outputs) in self.conditions[..self.count]
-            .chunks(T::LANES)
-            .zip(outputs.chunks_mut(T::LANES))
+        for (conditions, outputs) in
+            self.conditions[..self.count].chunks(T::LANES).zip(outputs.chunks_mut(T::LANES))
         {
-            let part = compute(&std::array::from_fn(|lane| {
-                conditions[lane.min(conditions.len() - 1)]
-            }));
+            let part =
+                compute(&std::array::from_fn(|lane| conditions[lane.min(conditions.len() - 1)]));
             outputs.copy_from_slice(&part[..outputs.len()]);
         }
         outputs

@@ -53,10 +53,7 @@ pub struct BlockKeys {
 
 impl Default for BlockKeys {
     fn default() -> Self {
-        Self {
-            all: Vec::new(),
-            likely: [0; 64],
-        }
+        Self { all: Vec::new(), likely: [0; 64] }
     }
 }
 

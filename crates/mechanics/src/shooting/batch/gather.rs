@@ -79,16 +79,8 @@ fn evenly<T: Lanes, I: Intrinsic<T>, C: Material<T>, S: Sensitivity<T>, const AD
     } else {
         (Scales::cylinder(h), one)
     };
-    let section = Section {
-        rho,
-        inverse_cube: one / (rho * rho * rho),
-        arclength: contacts.s,
-    };
-    let system = RodSystem {
-        force: contacts.force,
-        intrinsic,
-        material,
-    };
+    let section = Section { rho, inverse_cube: one / (rho * rho * rho), arclength: contacts.s };
+    let system = RodSystem { force: contacts.force, intrinsic, material };
     integrate::<_, I, C, S>(&system, &scales, section, contacts.steps, state, observer)
 }
 
@@ -146,9 +138,7 @@ impl<T: Lanes> Gather<T> for Bent<T> {
     #[inline(always)]
     fn gather(conditions: &Conditions, s: T) -> (Self, [T; 2], [T; 2]) {
         let bend = lanes(conditions, |condition| condition.rod.bend);
-        let is_level = conditions
-            .iter()
-            .all(|condition| condition.rod.slope == 0.0);
+        let is_level = conditions.iter().all(|condition| condition.rod.slope == 0.0);
         let at_base = if is_level {
             T::of(0.0)
         } else {

@@ -23,11 +23,7 @@ pub struct Trajectories<'a, O> {
 impl<'a, O> Trajectories<'a, O> {
     /// Creates the task for the trajectories of `block`, whose conditions all have this `key`.
     pub const fn new(key: BlockKey, block: &'a Block<'a>) -> Self {
-        Self {
-            key,
-            block,
-            outputs: PhantomData,
-        }
+        Self { key, block, outputs: PhantomData }
     }
 }
 
@@ -76,13 +72,7 @@ fn by_effects<O: OutputSet, T: Lanes>(
             })
         };
     }
-    let Effects {
-        curvature,
-        spiral,
-        polynomial,
-        gradient,
-        ..
-    } = key.effects;
+    let Effects { curvature, spiral, polynomial, gradient, .. } = key.effects;
     // On one lane a cylinder is a cone of taper 0: the bits are equal, and fewer kernels are compiled.
     if const { T::LANES > 1 && !FEW_KERNELS } && !key.effects.advances() {
         return if curvature {
@@ -155,12 +145,7 @@ where
 
     #[inline(always)]
     fn run(self) -> [O; WIDTH] {
-        let Self {
-            method,
-            key,
-            conditions,
-            ..
-        } = self;
+        let Self { method, key, conditions, .. } = self;
         let tau: T = lanes(conditions, |condition| condition.tau);
         let load: T = lanes(conditions, |condition| condition.load);
         let taper: T = lanes(conditions, |condition| condition.rod.taper);
@@ -200,11 +185,7 @@ where
         } else {
             in_mount::<T, S>(T::pack(mount), contact.force, rod, carried)
         };
-        let arrival = Arrival {
-            contact,
-            taper,
-            rod,
-        };
+        let arrival = Arrival { contact, taper, rod };
         let pole: T = lanes(conditions, |condition| condition.rod.pole);
         // See `Rod::to_pole`.
         let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];

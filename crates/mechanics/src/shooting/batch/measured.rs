@@ -57,11 +57,8 @@ impl PieceSpan {
             span.steps[lane] = last.1;
             span.most = span.most.max(last.1);
             span.is_whole[lane] = s[lane] > end[1];
-            [span.tau[lane], span.from[lane]] = if span.is_whole[lane] {
-                end
-            } else {
-                [tau[lane], s[lane]]
-            };
+            [span.tau[lane], span.from[lane]] =
+                if span.is_whole[lane] { end } else { [tau[lane], s[lane]] };
         }
         span
     }
@@ -154,11 +151,7 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
             return start;
         };
         let gradients = numbers(contacts.conditions, |condition| condition.rod.gradient);
-        let gradient = if gradients == [0.0; WIDTH] {
-            None
-        } else {
-            Some(T::pack(gradients))
-        };
+        let gradient = if gradients == [0.0; WIDTH] { None } else { Some(T::pack(gradients)) };
         let mut needs = [PieceSteps::default(); WIDTH];
         let mut farthest = 0.0_f64;
         for lane in 0..T::LANES {
@@ -171,11 +164,8 @@ impl<T: Lanes> GatherMaterial<T> for Measured<T> {
             let piece = &profile.pieces[k];
             let span = PieceSpan::new(profile, k, &tau, &s, &needs[..T::LANES]);
             let from = T::pack(span.from);
-            let mut section = Section {
-                rho: one - contacts.taper * from,
-                inverse_cube: zero,
-                arclength: from,
-            };
+            let mut section =
+                Section { rho: one - contacts.taper * from, inverse_cube: zero, arclength: from };
             let system = RodSystem {
                 force: contacts.force,
                 intrinsic,

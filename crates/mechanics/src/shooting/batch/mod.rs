@@ -59,10 +59,7 @@ impl Method {
     #[must_use]
     pub fn new(resolution: Resolution) -> Self {
         let effects = Effects::default();
-        Self {
-            resolution,
-            effects,
-        }
+        Self { resolution, effects }
     }
 
     /// Returns the method at [`Resolution::FINE`].
@@ -122,11 +119,7 @@ const CHUNKS_OF_A_THREAD: usize = 4;
 #[must_use]
 pub fn chunk_size(count: usize) -> usize {
     let threads = rayon::current_num_threads();
-    let chunks = if threads == 1 {
-        1
-    } else {
-        CHUNKS_OF_A_THREAD * threads
-    };
+    let chunks = if threads == 1 { 1 } else { CHUNKS_OF_A_THREAD * threads };
     count.div_ceil(chunks).max(SMALLEST_CHUNK)
 }
 
@@ -135,11 +128,7 @@ impl Batch {
     /// batch.
     #[must_use]
     pub fn new(method: Method) -> Self {
-        Self {
-            method,
-            unit: Unit::detect(),
-            is_padded: false,
-        }
+        Self { method, unit: Unit::detect(), is_padded: false }
     }
 
     /// Returns the batch integrator for another SIMD unit.
@@ -153,10 +142,7 @@ impl Batch {
     /// sheet.
     #[must_use]
     pub const fn padded(self) -> Self {
-        Self {
-            is_padded: true,
-            ..self
-        }
+        Self { is_padded: true, ..self }
     }
 
     /// Integrates the trajectories of all `conditions` on all threads of the current pool. Returns their outputs in the same order,
@@ -170,12 +156,11 @@ impl Batch {
         } else if conditions.len() <= size {
             self.chunk(conditions, &mut outputs);
         } else {
-            outputs
-                .par_chunks_mut(size)
-                .zip(conditions.par_chunks(size))
-                .for_each(|(outputs, conditions)| {
+            outputs.par_chunks_mut(size).zip(conditions.par_chunks(size)).for_each(
+                |(outputs, conditions)| {
                     self.chunk(conditions, outputs);
-                });
+                },
+            );
         }
         outputs
     }
@@ -187,9 +172,7 @@ impl Batch {
         rod: &Rod,
         points: impl IntoIterator<Item = impl Into<(f64, f64)>>,
     ) -> Vec<O> {
-        let conditions = points
-            .into_iter()
-            .map(|point| InitialCondition::new(rod, point));
+        let conditions = points.into_iter().map(|point| InitialCondition::new(rod, point));
         self.shoot(&conditions.collect::<Vec<_>>())
     }
 

@@ -75,16 +75,13 @@ impl OutputSet for PlainState {
         let Complex { re, im } = PoleCentre::new(arrival, pole).pole;
         let [cos, sin, x, y, _] = arrival.rod;
         let numbers = [re, im, cos, sin, x, y, arrival.contact.force, energy];
-        spread(
-            numbers,
-            |_, [pole_x, pole_y, cos, sin, x, y, force, energy]| Self {
-                pole: DVec2::new(pole_x, pole_y),
-                tangent: DVec2::new(cos, sin),
-                position: DVec2::new(x, y),
-                force,
-                energy,
-            },
-        )
+        spread(numbers, |_, [pole_x, pole_y, cos, sin, x, y, force, energy]| Self {
+            pole: DVec2::new(pole_x, pole_y),
+            tangent: DVec2::new(cos, sin),
+            position: DVec2::new(x, y),
+            force,
+            energy,
+        })
     }
 
     #[inline(never)]
@@ -130,12 +127,7 @@ impl OutputSet for FirstVariation {
     ) -> [FirstVariation; WIDTH] {
         let maps = PoleCentre::new(arrival, pole).maps(&first);
         let [cos, sin, x, y, _] = arrival.rod;
-        let Contact {
-            radius,
-            force,
-            tangent: [_, slant],
-            ..
-        } = arrival.contact;
+        let Contact { radius, force, tangent: [_, slant], .. } = arrival.contact;
         // The work along the change: of the moment at the base by its rotation, and of the force by its displacement.
         let work = |[theta, _, y]: Triple<T>| force * x.mul_add(theta, -y);
         let [theta_tau, x_tau, y_tau] = first.by_tau;
@@ -148,28 +140,25 @@ impl OutputSet for FirstVariation {
             cos, sin, x, y, force, energy, theta_tau, x_tau, y_tau, force_tau, work_tau,
             theta_load, x_load, y_load, force_load, work_load,
         ];
-        spread(
-            numbers,
-            |lane, [cos, sin, x, y, force, energy, changes @ ..]| {
-                let change = |i: usize| StateDerivative {
-                    angle: changes[i],
-                    position: DVec2::new(changes[i + 1], changes[i + 2]),
-                    force: changes[i + 3],
-                    energy: changes[i + 4],
-                };
-                FirstVariation {
-                    full: FullState {
-                        map: maps[lane],
-                        tangent: DVec2::new(cos, sin),
-                        position: DVec2::new(x, y),
-                        force,
-                        energy,
-                    },
-                    by_tau: change(0),
-                    by_load: change(5),
-                }
-            },
-        )
+        spread(numbers, |lane, [cos, sin, x, y, force, energy, changes @ ..]| {
+            let change = |i: usize| StateDerivative {
+                angle: changes[i],
+                position: DVec2::new(changes[i + 1], changes[i + 2]),
+                force: changes[i + 3],
+                energy: changes[i + 4],
+            };
+            FirstVariation {
+                full: FullState {
+                    map: maps[lane],
+                    tangent: DVec2::new(cos, sin),
+                    position: DVec2::new(x, y),
+                    force,
+                    energy,
+                },
+                by_tau: change(0),
+                by_load: change(5),
+            }
+        })
     }
 
     #[inline(never)]

@@ -29,9 +29,8 @@ pub fn shoot<O: OutputSet>(
     // Members are sorted by the rank of their keys: keys are few, and slow to compare.
     let mut sorted = keys.all.clone();
     sorted.sort_unstable();
-    let ranks: Vec<usize> = (keys.all.iter())
-        .map(|key| sorted.partition_point(|other| other < key))
-        .collect();
+    let ranks: Vec<usize> =
+        (keys.all.iter()).map(|key| sorted.partition_point(|other| other < key)).collect();
     for (key, _) in &mut members {
         *key = ranks[*key];
     }

@@ -54,10 +54,7 @@ impl<T: Real> PoleCentre<T> {
     pub fn new(arrival: &Arrival<T>, [to_x, to_y]: [T; 2]) -> Self {
         let [c, s, x, y, _] = arrival.rod;
         let w = Complex::new(to_x - x, to_y - y);
-        Self {
-            pole: Complex::new(c, -s).times(w),
-            inverse: w.inverse(),
-        }
+        Self { pole: Complex::new(c, -s).times(w), inverse: w.inverse() }
     }
 
     /// Returns `w_i/w` for the derivatives `[theta_i, x_i, y_i]` of the base by a variable `i`. Here, `w` is the vector from the base to the pole's
@@ -90,14 +87,11 @@ impl<T: Lanes> PoleCentre<T> {
         let load = self.ln_pole_by(first.by_load);
         let pole = self.pole;
         let numbers = [pole.re, pole.im, tau.re, tau.im, load.re, load.im];
-        spread(
-            numbers,
-            |_, [x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]| ShootingMap {
-                pole: DVec2::new(x, y),
-                by_tau: DVec2::new(ln_d_tau, phi_tau),
-                by_load: DVec2::new(ln_d_load, phi_load),
-            },
-        )
+        spread(numbers, |_, [x, y, ln_d_tau, phi_tau, ln_d_load, phi_load]| ShootingMap {
+            pole: DVec2::new(x, y),
+            by_tau: DVec2::new(ln_d_tau, phi_tau),
+            by_load: DVec2::new(ln_d_load, phi_load),
+        })
     }
 }
 

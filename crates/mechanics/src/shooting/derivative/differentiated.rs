@@ -20,9 +20,8 @@ pub fn spread<T: Lanes>(
 ) -> Differentiated {
     let [c, s, x, y, _] = arrival.rod;
     let force = arrival.contact.force;
-    let columns = [
-        c, s, x, y, force, energy, pole.re, pole.im, by_tau.re, by_tau.im, by_load.re, by_load.im,
-    ];
+    let columns =
+        [c, s, x, y, force, energy, pole.re, pole.im, by_tau.re, by_tau.im, by_load.re, by_load.im];
     let mut values = [0.0; 12];
     let mut lanes = [[0.0; WIDTH]; 12];
     for (i, column) in columns.iter().enumerate() {
@@ -42,11 +41,7 @@ fn transposed(values: &[f64; 12], columns: &[[f64; WIDTH]; 12]) -> Differentiate
     };
     let [tangent, position, pole, by_tau, by_load] = pairs(values);
     let full = FullState {
-        map: ShootingMap {
-            pole,
-            by_tau,
-            by_load,
-        },
+        map: ShootingMap { pole, by_tau, by_load },
         tangent,
         position,
         force: values[4],

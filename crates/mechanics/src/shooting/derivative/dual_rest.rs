@@ -26,15 +26,9 @@ impl<T: Lanes> DualRest<T> for Spiral<Dual<T>> {
     #[inline(always)]
     fn start(varied: &VariedCondition, s: Dual<T>) -> (Self, Self::State, [Dual<T>; 2]) {
         let coefficient = |i: usize| {
-            varied.number(
-                move |rod| rod.spiral.unwrap_or_default()[i],
-                move |by| by.spiral[i],
-            )
+            varied.number(move |rod| rod.spiral.unwrap_or_default()[i], move |by| by.spiral[i])
         };
-        let spiral = Self {
-            at_base: coefficient(0),
-            slope: coefficient(1),
-        };
+        let spiral = Self { at_base: coefficient(0), slope: coefficient(1) };
         (spiral, (), spiral.at(s))
     }
 }

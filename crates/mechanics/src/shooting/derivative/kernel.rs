@@ -34,10 +34,7 @@ pub fn compute<T: Lanes>(
         ($rest:ty) => {
             T::outlined(Kernel::<$rest> {
                 resolution,
-                varied: VariedCondition {
-                    condition,
-                    variables,
-                },
+                varied: VariedCondition { condition, variables },
                 of: PhantomData,
             })
         };
@@ -67,8 +64,7 @@ impl<I> Kernel<'_, I> {
         k: usize,
         number: impl Fn(&Piece) -> f64,
     ) -> Dual<T> {
-        self.varied
-            .number(|_| number(&profile.pieces[k]), |by| number(&by.piece(k)))
+        self.varied.number(|_| number(&profile.pieces[k]), |by| number(&by.piece(k)))
     }
 
     /// The state at the base after `state` at the `contact`, in steps of equal length.
@@ -113,19 +109,12 @@ impl<I> Kernel<'_, I> {
             let system = RodSystem {
                 force: system.force,
                 intrinsic: system.intrinsic,
-                material: Measured {
-                    from: start,
-                    cubic,
-                    gradient: Some(system.material.gradient),
-                },
+                material: Measured { from: start, cubic, gradient: Some(system.material.gradient) },
             };
             let h = (tau - end) * Dual::of(1.0 / f64::from(steps));
             let scales = Scales::tapered(taper, h);
-            let mut section = Section {
-                rho: (-taper).mul_add(from, Dual::of(1.0)),
-                arclength: from,
-                ..contact
-            };
+            let mut section =
+                Section { rho: (-taper).mul_add(from, Dual::of(1.0)), arclength: from, ..contact };
             for _ in 0..steps {
                 let weights: Integrals<Dual<T>> = BackwardCompliance {
                     material: &system.material,
@@ -151,20 +140,15 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
         let (zero, one) = (Dual::of(0.0), Dual::of(1.0));
         let InitialCondition { rod, tau, load } = *self.varied.condition;
         let is = |wanted: bool| f64::from(u8::from(wanted));
-        let tau: Dual<T> = self
-            .varied
-            .dual(tau, |by| is(matches!(by, TrajectoryVariable::Tau)));
-        let load: Dual<T> = self
-            .varied
-            .dual(load, |by| is(matches!(by, TrajectoryVariable::Load)));
+        let tau: Dual<T> = self.varied.dual(tau, |by| is(matches!(by, TrajectoryVariable::Tau)));
+        let load: Dual<T> = self.varied.dual(load, |by| is(matches!(by, TrajectoryVariable::Load)));
         let taper = self.varied.number(|rod| rod.taper, |by| by.taper);
         let [radius, s] = radius_and_arclength(taper, tau);
         let (intrinsic, at_rest, [curvature, curvature_slope]) = R::start(&self.varied, s);
         let friction: Dual<T> = self.varied.number(|rod| rod.friction, |by| by.friction);
         let cos = one / friction.mul_add(friction, one).sqrt();
-        let material = Graded {
-            gradient: self.varied.number(|rod| rod.gradient, |by| by.gradient),
-        };
+        let material =
+            Graded { gradient: self.varied.number(|rod| rod.gradient, |by| by.gradient) };
         let contact = Contact {
             radius,
             force: load * radius * radius,
@@ -175,20 +159,10 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
             curvature_slope,
         };
         let [c, sin] = contact.tangent;
-        let start = (
-            at_rest,
-            ([c, sin, zero, zero, zero], Carried::start(&contact)),
-        );
-        let section = Section {
-            rho: radius,
-            inverse_cube: one / (radius * radius * radius),
-            arclength: s,
-        };
-        let system = RodSystem {
-            force: contact.force,
-            intrinsic,
-            material,
-        };
+        let start = (at_rest, ([c, sin, zero, zero, zero], Carried::start(&contact)));
+        let section =
+            Section { rho: radius, inverse_cube: one / (radius * radius * radius), arclength: s };
+        let system = RodSystem { force: contact.force, intrinsic, material };
         let (_, (at_base, carried)) = match &rod.profile {
             Some(profile) => self.along(profile, &system, section, [taper, tau], start),
             None => self.evenly(&system, section, [taper, tau], start),
@@ -196,11 +170,7 @@ impl<T: Lanes, R: DualRest<T>> LanesTask<T> for Kernel<'_, R> {
         let mount = self.varied.number(|rod| rod.mount, |by| by.mount);
         let (at_base, carried) =
             in_mount::<Dual<T>, Carried>(mount, contact.force, at_base, carried);
-        let arrival = Arrival {
-            contact,
-            taper,
-            rod: at_base,
-        };
+        let arrival = Arrival { contact, taper, rod: at_base };
         let pole = self.varied.number(|rod| rod.pole, |by| by.pole);
         let to_pole = [pole * contact.tangent[1], -pole * contact.tangent[0]];
         let (first, energy) = Carried::at_base(&arrival, carried);

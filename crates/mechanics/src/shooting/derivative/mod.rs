@@ -75,11 +75,7 @@ pub fn differentiate(
     condition: &InitialCondition,
     variables: &[TrajectoryVariable],
 ) -> (FullState, Vec<VariationDerivative>) {
-    Unit::detect().run(Differentiation {
-        resolution,
-        condition,
-        variables,
-    })
+    Unit::detect().run(Differentiation { resolution, condition, variables })
 }
 
 /// Task that differentiates one trajectory, as many variables at a time as there are lanes.

@@ -23,10 +23,7 @@ impl VariedCondition<'_> {
         for (lane, variable) in lanes.iter_mut().zip(self.variables) {
             *lane = derivative(*variable);
         }
-        Dual {
-            value: T::of(value),
-            derivative: T::pack(lanes),
-        }
+        Dual { value: T::of(value), derivative: T::pack(lanes) }
     }
 
     /// A number of the rod.

@@ -149,8 +149,5 @@ pub fn collocate<T: Real, I: Intrinsic<T>, S: Sensitivity<T>>(
         sums = sums.plus(weight, climbs[j]);
     }
     let (([x], levers), ([y], sums)) = (levers, sums);
-    (
-        I::after(&course, end.along),
-        (upright([c, s, x, y, bent]), (angles, (levers, sums))),
-    )
+    (I::after(&course, end.along), (upright([c, s, x, y, bent]), (angles, (levers, sums))))
 }

@@ -70,22 +70,13 @@ impl<T: Real> Scales<T> {
     #[inline(always)]
     pub fn cylinder(h: T) -> Self {
         let one = T::of(1.0);
-        let start = StepStage {
-            sigma: h,
-            along: h,
-            grown: one,
-            inverse_cube: one,
-            shrunk: one,
-        };
+        let start = StepStage { sigma: h, along: h, grown: one, inverse_cube: one, shrunk: one };
         let mut stages = [start; STAGES];
         for (stage, node) in stages.iter_mut().zip(Nystrom8::NODES) {
             stage.sigma = h * T::of(node);
             stage.along = stage.sigma;
         }
-        Self {
-            stages,
-            taper: None,
-        }
+        Self { stages, taper: None }
     }
 
     /// Returns the stage with index `i` of a step.

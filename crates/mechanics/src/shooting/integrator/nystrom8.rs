@@ -147,9 +147,7 @@ impl Nystrom8 {
         let liouville = system.material.liouville(scales.taper, &from, end);
         let ([c, s], bent, angles) = at_chi!(STAGES - 1, liouville.inverse_scale, chi);
         let scale =
-            system
-                .material
-                .liouville_scale(scales.taper, &from, end, liouville.inverse_scale);
+            system.material.liouville_scale(scales.taper, &from, end, liouville.inverse_scale);
         // `X = m (chi' - (m'/m) chi)`.
         let ([x], levers) = match scale {
             Some([growth, scale]) => speed.plus(-h * growth, chi).times(scale),
@@ -158,9 +156,6 @@ impl Nystrom8 {
         let ([climb], sums_climb) = rise;
         let rod = [c, s, x, reach.mul_add(climb, y), bent];
         let rest = I::after(&course, end.along);
-        (
-            rest,
-            (rod, (angles, (levers, sums.plus(reach, sums_climb)))),
-        )
+        (rest, (rod, (angles, (levers, sums.plus(reach, sums_climb)))))
     }
 }

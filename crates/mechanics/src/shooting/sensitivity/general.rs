@@ -114,10 +114,7 @@ impl<T: Real> SensitivitySet<T> for GeneralSecond {
         let theta_ss = -contact.curvature_slope - contact.force * x / contact.stiffness;
         let zero = T::of(0.0);
         let (angles, (levers, _)) = GeneralFirst::start(contact);
-        (
-            (angles, [zero, zero, theta_ss]),
-            ((levers, [zero, zero, -kappa * y]), [zero, zero]),
-        )
+        ((angles, [zero, zero, theta_ss]), ((levers, [zero, zero, -kappa * y]), [zero, zero]))
     }
 
     #[inline(always)]
@@ -141,15 +138,10 @@ impl<T: Real> SensitivitySet<T> for GeneralSecond {
         let ss = [theta_ss, x_ss, y_ss];
         let (rho, load, taper) = (arrival.contact.radius, load(arrival), arrival.taper);
         let two = T::of(2.0);
-        let by_tau_tau = sum(
-            sum(ff.times(load * load), fs.times(two * load * rho)),
-            ss.times(rho * rho),
-        );
+        let by_tau_tau =
+            sum(sum(ff.times(load * load), fs.times(two * load * rho)), ss.times(rho * rho));
         let slanted = sum(by_force.times(two * load), by_arclength.times(rho));
-        let by_tau_load = sum(
-            sum(ff.times(load), fs.times(rho)),
-            by_force.times(-two * taper),
-        );
+        let by_tau_load = sum(sum(ff.times(load), fs.times(rho)), by_force.times(-two * taper));
         SecondBaseDerivatives {
             first: base_derivatives(arrival, by_force, by_arclength),
             by_tau_tau: sum(by_tau_tau, slanted.times(-taper)),

@@ -47,18 +47,10 @@ impl<T: Real> SensitivitySet<T> for SimilarFirst {
     #[inline(always)]
     fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> BaseDerivatives<T> {
         let ([theta], ([x_f], [y_f])) = carried;
-        let Arrival {
-            contact,
-            taper,
-            rod: [c, s, x, y, _],
-        } = *arrival;
+        let Arrival { contact, taper, rod: [c, s, x, y, _] } = *arrival;
         let by_load = contact.radius * contact.radius;
         BaseDerivatives {
-            by_tau: [
-                contact.force * x,
-                -taper.mul_add(x, c),
-                -taper.mul_add(y, s),
-            ],
+            by_tau: [contact.force * x, -taper.mul_add(x, c), -taper.mul_add(y, s)],
             by_load: [theta, x_f, y_f].times(by_load),
         }
     }
@@ -67,11 +59,7 @@ impl<T: Real> SensitivitySet<T> for SimilarFirst {
 /// Derivative by `tau` of a derivative of `theta, X, Y`, at a fixed force.
 #[inline(always)]
 fn by_tau<T: Real>(f: T, taper: T, [c, s]: [T; 2], [theta, x, y]: Triple<T>) -> Triple<T> {
-    [
-        f * x,
-        s.mul_add(theta, -taper * x),
-        -taper.mul_add(y, c * theta),
-    ]
+    [f * x, s.mul_add(theta, -taper * x), -taper.mul_add(y, c * theta)]
 }
 
 impl<T: Real> Sensitivity<T> for SimilarSecond {
@@ -103,11 +91,7 @@ impl<T: Real> SensitivitySet<T> for SimilarSecond {
     fn at_base(arrival: &Arrival<T>, carried: Carried<T, Self>) -> SecondBaseDerivatives<T> {
         let ([theta_f, theta_ff], ([x_f, x_ff], [y_f, y_ff])) = carried;
         let first = SimilarFirst::at_base(arrival, ([theta_f], ([x_f], [y_f])));
-        let Arrival {
-            contact,
-            taper,
-            rod: [c, s, x, ..],
-        } = *arrival;
+        let Arrival { contact, taper, rod: [c, s, x, ..] } = *arrival;
         let (f, by_load) = (contact.force, contact.radius * contact.radius);
         let [theta_tau_tau, x_tau_tau, y_tau_tau] = by_tau(f, taper, [c, s], first.by_tau);
         let [theta_tau_load, x_tau_load, y_tau_load] = by_tau(f, taper, [c, s], first.by_load);
