@@ -176,7 +176,7 @@ impl<'a> HeatMapLayout<'a> {
 /// The axes of a contact sheet of this `area`: ticks at the middles of its panels, or none if the values are above them.
 fn sheet_axes(map: &HeatMap, area: [f64; 2], panels: &PanelGrid, spacing: Spacing) -> Axes {
     let axes = map.panel_axes.each_ref();
-    if !panels.labels.is_empty() {
+    if panels.has_labels() {
         return Axes::new([(Vec::new(), ""), (Vec::new(), "")], area, spacing);
     }
     let ticks = |side: usize| -> Vec<Tick> {

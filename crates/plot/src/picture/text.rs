@@ -37,7 +37,7 @@ fn shrunk(text: &str, largest: f64, room: f64) -> f64 {
 }
 
 fn fits(text: &str, size: f64, room: f64) -> bool {
-    width(text, size) <= room + 1.0
+    text.is_empty() || width(text, size) <= room + 1.0
 }
 
 /// A text set into lines of one font size.
@@ -119,6 +119,7 @@ mod tests {
             assert!(cut <= 401.0 && cut + one > 401.0, "{cut}");
         }
         assert_eq!(fitted("wide", 20.0, 1.0).0, ELLIPSIS);
+        assert_eq!(fitted("", 20.0, -20.0).0, "");
     }
 
     #[test]

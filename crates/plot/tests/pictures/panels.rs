@@ -3,8 +3,8 @@
 use crate::drawn::{Pixels, body, polylines, rasters, svg};
 use crate::{BLACK, BLANK, WHITE};
 use whiskmap_plot::{
-    CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize, Shading,
-    SizeError,
+    CellAxis, Fill, HeatMap, LegendEntry, PanelAxis, PanelCells, Picture, PictureSize, PrintSize,
+    Shading, SizeError,
 };
 
 const RED: [u8; 3] = [200, 0, 0];
@@ -143,4 +143,41 @@ fn panels_along_one_axis_fill_rows() {
         assert!(right - panels[0][0] > 0.8 * width as f64, "{panels:?}");
         assert_eq!(svg.matches(">0.75<").count(), 1, "{svg}");
     }
+}
+
+/// Above narrow panels, a label takes as many lines as it needs, between its panel and the one above.
+#[test]
+fn labels_of_narrow_panels_keep_their_words() {
+    let texts = ["moment and transverse force", "short", "axial and transverse force", "last"];
+    let mut map = coded(&[1.0, 2.0], &[1.0, 2.0]);
+    let texts = texts.map(str::to_owned).to_vec();
+    map.panel_axes[0] = Some(PanelAxis { label: "numbers".to_owned(), texts: texts.clone() });
+    (map.title, map.legend) = (String::new(), Vec::new());
+    for (width_mm, height_mm) in [(60.0, None), (60.0, Some(90.0)), (160.0, None)] {
+        let print = PictureSize::Print(PrintSize { width_mm, height_mm, dpi: 300.0 });
+        let cells = || PanelCells { values: vec![0.0; 4], ..PanelCells::default() };
+        let picture = map.picture(print, |_| Ok::<_, SizeError>(cells())).unwrap();
+        let svg = svg(&picture);
+        let lines: Vec<(f64, &str)> = svg.lines().filter_map(text_line).collect();
+        let rasters: Vec<[f64; 4]> = rasters(&svg).into_iter().map(|(area, _)| area).collect();
+        let panels = &rasters[rasters.len() - texts.len()..];
+        let words = |above: f64, below: f64| -> Vec<&str> {
+            let between = lines.iter().filter(|(y, _)| above < *y && *y < below);
+            between.flat_map(|(_, text)| text.split(' ')).collect()
+        };
+        let [[_, top, _, height], _, [_, below, ..], _] = panels else { panic!("{panels:?}") };
+        let mut found = words(0.0, *top);
+        found.extend(words(top + height, *below));
+        let mut expected: Vec<&str> = texts.iter().flat_map(|text| text.split(' ')).collect();
+        found.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(found, expected, "{width_mm} mm: {svg}");
+    }
+}
+
+/// Height and text of a line of text in an SVG document.
+fn text_line(line: &str) -> Option<(f64, &str)> {
+    let (tag, rest) = line.strip_prefix("<text ")?.split_once('>')?;
+    let y = tag.split_once(" y=\"")?.1.split('"').next()?.parse().ok()?;
+    Some((y, rest.split('<').next()?))
 }
