@@ -108,15 +108,20 @@ impl<'a> Misfit<'a> {
     /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
     fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
         let whiskers = self.points.whiskers_in(&*self.accepted(parameters)?).ok()?;
-        let variables: Vec<Variable> =
-            self.free.iter().map(|parameter| (*parameter).into()).collect();
+        let free = self.free.iter().map(|parameter| Variable::from(*parameter));
+        let mut variables: Vec<Variable> = free.collect();
+        // With a free taper, the radius at the tip follows the radius at the base.
+        let tip_by_base = 1.0 - whiskers[0].whisker.taper();
+        let has_taper = self.free.contains(&Parameter::Taper) && tip_by_base > 0.0;
+        let base = self.free.iter().position(|free| *free == Parameter::BaseRadiusUm);
+        let base = base.filter(|_| has_taper);
+        variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
         let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
-        // With a free taper, the radius at the tip follows the radius at the base. No detachment depends on the size of a cone.
-        if self.free.contains(&Parameter::Taper) {
-            let of_base = self.free.iter().zip(&mut columns);
-            let mut of_base =
-                of_base.filter(|(parameter, _)| **parameter == Parameter::BaseRadiusUm);
-            of_base.by_ref().for_each(|(_, column)| column.fill(0.0));
+        if let Some(base) = base
+            && let Some(by_tip) = columns.pop()
+        {
+            let both = columns[base].iter_mut().zip(by_tip);
+            both.for_each(|(by_base, by_tip)| *by_base += tip_by_base * by_tip);
         }
         for (column, unit) in columns.iter_mut().zip(&self.units) {
             for (derivative, point) in column.iter_mut().zip(&self.points.points) {

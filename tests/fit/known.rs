@@ -53,6 +53,21 @@ fn several_at_once() {
     comes_back(&cone(), MeasuredAngle::Push, &stretched);
 }
 
+/// In a follicle, detachments depend on the size of a cone, also where the taper is free.
+#[test]
+fn the_size_of_a_cone_in_a_follicle() {
+    let text = include_str!("../../scenes/cone.toml");
+    let follicle = "[whisker.follicle]\nstiffness_nnm_per_rad = 2000\n";
+    let scene = Scene::parse(&format!("{text}{follicle}"), "cone.toml").unwrap();
+    for truth in [
+        &[(BaseRadiusUm, 33.0), (Taper, 0.9)][..],
+        &[(Taper, 0.85), (ParabolaPerMm, 0.018), (BaseRadiusUm, 28.0)],
+        &[(BaseRadiusUm, 33.0), (TipRadiusUm, 3.0)],
+    ] {
+        comes_back(&scene, MeasuredAngle::Push, truth);
+    }
+}
+
 #[test]
 fn chord_angles_do_as_well() {
     comes_back(&cone(), MeasuredAngle::Chord, &ALL[..4]);

@@ -40,6 +40,10 @@ fn what_counts_only_together_is_not_determined() {
     assert!((ratio * 15.0 - 1.0).abs() < 1e-8, "{ratio}");
     assert!((found.estimates[1].value - 0.018).abs() < 1e-9);
 
+    let found = fit(&cone(), &points, &[BaseRadiusUm, ParabolaPerMm, Taper]).unwrap();
+    assert_eq!(determined(&found), [ParabolaPerMm, Taper]);
+    assert_eq!((found.estimates[0].value, found.degrees_of_freedom), (30.0, 22));
+
     let slips = MeasuredPoints {
         points: points.points.iter().copied().filter(|point| point.distance_mm < 16.5).collect(),
         ..points
