@@ -17,4 +17,4 @@ pub(crate) use names::{misnamed, shortened};
 #[cfg(feature = "gpu")]
 pub(crate) use source::read;
 pub(crate) use source::{TEXT_MIB, bounded, open, open_regular};
-pub(crate) use table::{CsvLines, MOST_SECONDS, is_missing, read_bytes, text_of};
+pub(crate) use table::{CsvLines, MOST_SECONDS, STDIN, is_missing, read_bytes, text_of};

@@ -8,6 +8,9 @@ use std::fs::File;
 use std::io;
 use std::path::Path;
 
+/// Name of standard input in messages.
+pub(crate) const STDIN: &str = "<stdin>";
+
 /// Error in a CSV file: one line with the file, the line, the value and what is allowed.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{place}: {what}")]
@@ -76,7 +79,7 @@ impl CsvTable {
     /// # Errors
     /// Fails as [`CsvTable::read`] does.
     pub fn read_stdin() -> Result<Self, CsvError> {
-        Self::decode(bounded(io::stdin().lock(), TABLE_MIB), "<stdin>")
+        Self::decode(bounded(io::stdin().lock(), TABLE_MIB), STDIN)
     }
 
     fn decode(bytes: io::Result<Vec<u8>>, origin: &str) -> Result<Self, CsvError> {

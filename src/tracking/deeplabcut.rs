@@ -1,5 +1,6 @@
 //! CSV files of DeepLabCut: the rows `scorer`, `bodyparts` and `coords`, then a row for each frame.
 
+use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
 use super::{FRAME_NUMBERS, ImageFrame, ImageFrames, PointOrder, Remarks, frame_number};
 use crate::input::{CsvError, CsvLine, CsvLines, CsvTable, each_once, shortened};
@@ -14,22 +15,29 @@ pub(super) fn read(
     options: &TrackingOptions,
 ) -> Result<ImageFrames, TrackingError> {
     if let Some(whisker) = options.whisker {
-        let must = "must be left out: points names the body parts of the whisker".to_owned();
+        let must =
+            "must be left out with files of DeepLabCut: they have body parts, and no identities"
+                .to_owned();
         return Err(refused("whisker", &whisker.to_string(), must));
     }
     check_header(&lines, origin)?;
     let header: Vec<CsvLine> = lines.lines.drain(..HEADER.len()).collect();
-    let names = header[1].cells.iter().skip(1);
+    // Newer versions name an image in three columns: two folders, and the file.
+    let folders = header[1].cells.iter().skip(1).take_while(|part| part.is_empty()).count();
+    let names = header[1].cells.iter().skip(1 + folders);
     let columns: Vec<String> = names
         .clone()
-        .zip(header[2].cells.iter().skip(1))
+        .zip(header[2].cells.iter().skip(1 + folders))
         .map(|(name, coord)| format!("{name} {coord}"))
         .collect();
     let parts: Vec<&str> = each_once(&names.collect::<Vec<_>>());
     let table = lines.table(
         CsvLine {
             number: header[2].number,
-            cells: std::iter::once("frame").chain(columns.iter().map(String::as_str)).collect(),
+            cells: std::iter::repeat_n("folder", folders)
+                .chain(std::iter::once("frame"))
+                .chain(columns.iter().map(String::as_str))
+                .collect(),
         },
         origin,
     )?;
@@ -126,13 +134,14 @@ fn frames(
     pole: Option<&PartPositions>,
     fixed: Option<[f64; 2]>,
 ) -> Result<Vec<ImageFrame>, CsvError> {
-    let is_number = |cell: &str| cell.replace(',', ".").parse::<f64>().is_ok();
-    let cells = table.values("frame", "", |cell| Some(is_number(cell)))?;
+    let is_number = |cell: &String| cell.replace(',', ".").parse::<f64>().is_ok();
+    let cells = table.values("frame", "", |cell| Some(cell.to_owned()))?.unwrap_or_default();
     // Labelled images have the names of files instead of numbers.
-    let are_images = cells.is_some_and(|are_numbers| !are_numbers.contains(&true));
-    let numbers: Vec<u64> = match are_images {
-        true => (0..table.lines().count() as u64).collect(),
-        false => table.values("frame", FRAME_NUMBERS, frame_number)?.unwrap_or_default(),
+    let numbers: Vec<u64> = if cells.iter().any(is_number) {
+        table.values("frame", FRAME_NUMBERS, frame_number)?.unwrap_or_default()
+    } else {
+        let names: Vec<&str> = cells.iter().map(String::as_str).collect();
+        numbers_in(&names).unwrap_or_else(|| (0..names.len() as u64).collect())
     };
     let mut frames: Vec<ImageFrame> = Vec::with_capacity(numbers.len());
     for ((i, line), number) in table.lines().enumerate().zip(numbers) {

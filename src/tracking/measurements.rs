@@ -50,7 +50,7 @@ pub(super) fn read(
     let numbers = numbers.transpose()?.unwrap_or_default();
     let (column, identities) = identities(&table)?;
     let whisker = match options.whisker {
-        Some(whisker) if identities.contains(&whisker) => whisker,
+        Some(whisker) if whisker >= 0 && identities.contains(&whisker) => whisker,
         given => only(given, column, &identities)?,
     };
     let number = |name: &str| {
@@ -66,6 +66,7 @@ pub(super) fn read(
         _ => None,
     };
     let mut frames: BTreeMap<u64, (f64, ImageFrame)> = BTreeMap::new();
+    let ends = [numbers.iter().min(), numbers.iter().max()].map(|end| end.copied());
     let mut doubles = 0;
     for (i, (frame, identity)) in numbers.into_iter().zip(identities).enumerate() {
         let (follicle, tip, bend) = ([x[i], y[i]], [tip_x[i], tip_y[i]], [angle[i], curvature[i]]);
@@ -85,6 +86,11 @@ pub(super) fn read(
         if before.is_none_or(|before| chord > before) {
             frames.insert(frame, (chord, segment));
         }
+    }
+    // The film begins and ends where the file does, also where this whisker is lost.
+    for number in ends.into_iter().flatten() {
+        let lost = || ImageFrame { number, points_px: Vec::new(), bend: None, pole_px };
+        frames.entry(number).or_insert_with(|| (0.0, lost()));
     }
     let doubles = (doubles > 0).then(|| {
         format!("{origin}: {doubles} segments are shorter than another one of whisker {whisker} in their frame, and not used")

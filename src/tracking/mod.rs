@@ -11,6 +11,7 @@ mod deeplabcut;
 mod detachment;
 mod frame_curve;
 mod measurements;
+mod names;
 mod options;
 mod orient;
 mod points;
@@ -22,7 +23,7 @@ pub use detachment::TrackedDetachment;
 pub use options::{FaceAxis, ImagePole, TrackingError, TrackingFormat, TrackingOptions};
 pub use rows::{NoFrame, TrackedFrame};
 
-use crate::input::{CsvError, CsvLines, read_bytes, text_of};
+use crate::input::{CsvError, CsvLines, STDIN, read_bytes, text_of};
 use crate::trace::row;
 use frame_curve::FrameCurve;
 use options::refused;
@@ -138,7 +139,8 @@ row! {
 }
 
 impl Tracking {
-    /// Reads the files of a tracker; `-` is standard input. Only points without a header may come in several files, one for each frame.
+    /// Reads the files of a tracker; `-` is standard input. Only points without a header may come in several files, one for each frame, in
+    /// any order if their names have its number.
     ///
     /// # Errors
     /// If a file cannot be read, is longer than 256 MiB or has no known format, and for the reasons of [`Tracking::parse`].
@@ -148,7 +150,10 @@ impl Tracking {
         cancel: &AtomicBool,
     ) -> Result<Self, TrackingError> {
         let text = |path: &Path| {
-            let origin = path.to_string_lossy().into_owned();
+            let origin = match path.as_os_str() == "-" {
+                true => STDIN.to_owned(),
+                false => path.to_string_lossy().into_owned(),
+            };
             let bytes = read_bytes(path, TRACKING_MIB)?;
             if bytes.starts_with(HDF5) {
                 let what = "is an HDF5 file: NWB files are read in Python, by wm.read_tracking";

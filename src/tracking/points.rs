@@ -1,8 +1,9 @@
 //! Points along the whisker without a header: `x,y`, a file for each frame, or `frame,x,y`.
 
+use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
-use crate::input::{CsvError, CsvLine, CsvLines};
+use crate::input::{CsvError, CsvLine, CsvLines, shortened};
 
 /// Reads the frames of files. An empty file among several is a lost frame, and a point without numbers is a lost point.
 pub(super) fn read(
@@ -25,7 +26,8 @@ pub(super) fn read(
         None => None,
     };
     let mut frames: Vec<ImageFrame> = Vec::new();
-    for (file, (text, origin)) in texts.iter().enumerate() {
+    let (files, note) = in_order(texts)?;
+    for (file, (text, origin)) in files {
         let lines = CsvLines::split(text, origin)?;
         let columns = lines.lines.first().map_or(2, |line| line.cells.len());
         let names: &[&str] = match columns {
@@ -60,7 +62,7 @@ pub(super) fn read(
         let is_known = |point: &[f64; 2]| point.iter().all(|coordinate| !coordinate.is_nan());
         let points = x.into_iter().zip(y).map(|(x, y)| Some([x, y]).filter(is_known));
         let Some(numbers) = numbers else {
-            add(file as u64, &mut points.into_iter());
+            add(file, &mut points.into_iter());
             continue;
         };
         let mut before = 0;
@@ -74,5 +76,34 @@ pub(super) fn read(
             add(number, &mut std::iter::once(point));
         }
     }
-    Ok(ImageFrames { frames, order: PointOrder::Along, remarks: Remarks::default() })
+    let remarks = Remarks { notes: note.into_iter().collect(), ..Remarks::default() };
+    Ok(ImageFrames { frames, order: PointOrder::Along, remarks })
+}
+
+/// File of a frame: the frame's number, and text and name of the file.
+type FrameFile<'a> = (u64, &'a (String, String));
+
+/// Returns the files by the numbers of their frames, which are in their names. Without numbers there, files are counted from 0, with a note if there are
+/// several.
+fn in_order(texts: &[(String, String)]) -> Result<(Vec<FrameFile<'_>>, Option<String>), CsvError> {
+    let names: Vec<&str> = texts.iter().map(|(_, origin)| &**origin).collect();
+    let Some(numbers) = numbers_in(&names) else {
+        let note = (names.len() > 1).then(|| {
+            format!("names of files have no numbers of frames: frame 0 is {}", shortened(names[0]))
+        });
+        return Ok(((0..).zip(texts).collect(), note));
+    };
+    let mut files: Vec<FrameFile> = numbers.into_iter().zip(texts).collect();
+    files.sort_by_key(|(number, _)| *number);
+    for pair in files.windows(2) {
+        let [(number, (_, before)), (other, (_, origin))] = pair else { continue };
+        if number == other {
+            let what = format!(
+                "is of frame {number}, as {} is: must be of another frame",
+                shortened(before)
+            );
+            return Err(CsvError::whole(origin, what));
+        }
+    }
+    Ok((files, None))
 }

@@ -122,6 +122,34 @@ fn contacts_without_first_touch_or_end_are_counted() {
     }
 }
 
+/// A shell sorts `f_10.csv` before `f_2.csv`.
+#[test]
+fn files_of_frames_are_in_the_order_of_their_numbers() {
+    let place = film();
+    let frames = [1, 2, 10, 12].map(|frame| {
+        let (sin, cos) = (0.02 * f64::from(frame)).sin_cos();
+        let point = |s: i32| {
+            let s = f64::from(s);
+            format!("{},{}\n", cos * s + 0.01 * sin * s * s, sin * s - 0.01 * cos * s * s)
+        };
+        place.write(&format!("f_{frame}.csv"), &(0..20).map(point).collect::<String>());
+        frame
+    });
+    let files = ["f_1.csv", "f_10.csv", "f_12.csv", "f_2.csv"];
+    let options = ["--mm-per-pixel=0.5", "--fps=10", "--follicle=0,0", "--degree=1"];
+    let run = place.good(&[&["import"], &files[..], &options].concat());
+    let rows: Vec<Vec<&str>> = run.out.lines().map(|line| line.split(',').collect()).collect();
+    let known = rows[1..].iter().filter(|row| !row[2].is_empty());
+    let known: Vec<(i32, f64)> =
+        known.map(|row| (row[0].parse().unwrap(), row[2].parse().unwrap())).collect();
+    assert_eq!(known.iter().map(|(frame, _)| *frame).collect::<Vec<_>>(), frames);
+    for (frame, angle) in known {
+        let turned = (0.02 * f64::from(frame - 1)).to_degrees();
+        assert!((angle - turned).abs() < 1e-6, "{frame}: {angle} {turned}");
+    }
+    assert_eq!((rows.len(), rows[2][1]), (13, "0.2"));
+}
+
 #[test]
 fn measurements_of_whisk_and_points_are_read() {
     let place = film();

@@ -159,7 +159,21 @@ fn frames_have_numbers_or_names_of_images() {
         })
     };
     assert_eq!(found(&change(&film, &|i| format!("{i}.0"))), whole);
-    let images = found(&change(&film, &|i| format!("img{i}.png")));
+    assert_eq!(found(&change(&film, &|i| format!("img{i:03}.png"))), whole);
+    let images =
+        found(&change(&film, &|i| format!("img{}.png", ["a", "b", "c", "d", "e", "f"][i])));
     let numbers = images.iter().map(|(frame, _)| *frame);
     assert_eq!(numbers.collect::<Vec<_>>(), [0, 1, 2, 3, 4]);
+    // Names in the order of another film are refused, as numbers are.
+    let why = parse(&change(&film, &|i| format!("img{}.png", 9 - i)), &options()).unwrap_err();
+    assert!(why.to_string().contains("frame 8: must be more than 9"), "{why}");
+    // Newer files name images in three columns.
+    let folders = film.lines().enumerate().map(|(i, line)| {
+        let (name, cells) = line.split_once(',').unwrap();
+        match i {
+            0..3 => format!("{name},,,{cells}\n"),
+            _ => format!("labeled-data,film 2,img{name}.png,{cells}\n"),
+        }
+    });
+    assert_eq!(found(&folders.collect::<String>()), whole);
 }

@@ -254,6 +254,20 @@ fn measurements_of_whisk_come_back() {
         let why = found.shape(0).unwrap_err().to_string();
         assert!(why.contains("measurements of whisk have no points along the whisker"), "{why}");
     }
+    // Frames without the whisker are gaps at the ends of the film, too.
+    let first = "0,3,0,-100,200,400,1500,nan,0.01,200,100,230,90\n";
+    let last = "6,1,-1,-100,200,50,500,80,0.01,200,100,230,90\n";
+    let all = measurements(FaceAxis::Y);
+    let (header, rows) = all.split_once('\n').unwrap();
+    let rows: Vec<&str> = rows.lines().filter(|row| !row.starts_with("0,3")).collect();
+    let found =
+        parse(&format!("{header}\n{first}{}\n{last}", rows.join("\n")), &options()).unwrap();
+    let reasons: Vec<_> =
+        found.frames.iter().map(|row| (row.frame, row.reason.is_some())).collect();
+    let lost = [true, false, true, false, false, false, true];
+    assert_eq!(reasons, (0..).zip(lost).collect::<Vec<_>>());
+    let why = refusal(&all, &with(&|options| options.whisker = Some(-1)));
+    assert_eq!(why, "whisker = -1: must be an identity in the column label: 0 (5 rows)");
     // The axis may be given, and the table may have the names of ndx-whisk and no labels.
     let named =
         measurements(FaceAxis::Y).replace("fid,wid,label", "frame_id,whisker_id,chunk_start");
@@ -291,6 +305,19 @@ fn points_without_a_header_come_back() {
         .collect();
     let cancel = AtomicBool::new(false);
     let several = Tracking::parse(&files, &options(), &cancel).unwrap();
+    // Names have the numbers of frames, whatever the order of the files.
+    let mut shuffled = files.clone();
+    shuffled.rotate_left(2);
+    assert_eq!(Tracking::parse(&shuffled, &options(), &cancel).unwrap(), several);
+    shuffled[0].1 = "03.csv".to_owned();
+    let why = Tracking::parse(&shuffled, &options(), &cancel).unwrap_err();
+    assert!(why.to_string().contains("is of frame 3, as"), "{why}");
+    for (file, name) in shuffled.iter_mut().zip(["b", "a", "c", "d", "e", "f"]) {
+        file.1 = format!("{name}.csv");
+    }
+    let counted = Tracking::parse(&shuffled, &options(), &cancel).unwrap();
+    assert_eq!(counted.frames[1].reason, Some(NoFrame::Missing));
+    assert!(counted.notes[0].contains("have no numbers of frames: frame 0 is b.csv"));
     let rows = |frame: usize| -> String {
         points(frame).lines().map(|line| format!("{frame},{line}\n")).collect()
     };

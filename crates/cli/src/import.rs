@@ -3,13 +3,14 @@
 use super::arguments::{column_help, duration, length, named, whole};
 use super::failure::{Failure, message, notes, warnings};
 use super::files::Files;
-use super::outputs::{OutputTable, write_table};
+use super::outputs::{Columns, OutputTable, write_table};
 use clap::{ArgAction, Args};
 use serde::Serialize;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 use whiskmap::input::Quantity;
+use whiskmap::store::Output;
 use whiskmap::terminal::StandardOutput;
 use whiskmap::tracking::{
     FaceAxis, ImagePole, TrackedDetachment, TrackedFrame, TrackedPoint, Tracking, TrackingError,
@@ -194,22 +195,22 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
     notes(&tracking.notes);
     warnings(&tracking.warnings);
     match shape {
-        Some(points) => write(OutputTable::new(output), points),
+        Some(points) => write(output, TrackedPoint::COLUMNS, points),
         None if args.detachments => {
             if tracking.detachments.is_empty() {
                 message(
                     "warning: no contact with a first touch and an end in the film has the pole on the other side of the whisker afterwards",
                 );
             }
-            write(OutputTable::new(output), tracking.detachments)
+            write(output, TrackedDetachment::COLUMNS, tracking.detachments)
         }
-        None => write(OutputTable::new(output), tracking.frames),
+        None => write(output, TrackedFrame::COLUMNS, tracking.frames),
     }
 }
 
 /// Writes the whole table, and prints the name of a regular file.
-fn write<R: Serialize>(table: OutputTable, rows: Vec<R>) -> Result<(), Failure> {
-    if let Some(path) = write_table(Some(table), rows)? {
+fn write<R: Serialize>(output: Output, columns: Columns, rows: Vec<R>) -> Result<(), Failure> {
+    if let Some(path) = write_table(Some(OutputTable::new(output)), columns, rows)? {
         writeln!(StandardOutput::open(), "{}", path.display())?;
     }
     Ok(())
