@@ -41,7 +41,7 @@ pub fn chart(
         let marks = marks.of_panel(map, index)?;
         let ink = match names.len() {
             1 => Ink::Black,
-            _ => Ink::Series(index),
+            count => Ink::of_series(index, count),
         };
         for (points, mark) in parts(&grid.push_angle_deg, &values, &marks) {
             lines.push(match mark {

@@ -68,6 +68,14 @@ fn several_poles_share_a_table_and_a_plot() {
             assert!(svg.contains(&format!(">{text}<")), "{column}: {text}");
         }
     }
+    let many: Vec<String> = (5..17).map(|mm| format!("--distance={mm}")).collect();
+    let many: Vec<&str> = many.iter().map(String::as_str).collect();
+    place.quiet(&[&["branch", "scene.toml", "--points=9", "--plot=p.svg"], &many[..]].concat());
+    let svg = place.text("p.svg");
+    let colours = svg.split("stroke=\"#").skip(1).map(|rest| &rest[..6]);
+    let colours: std::collections::BTreeSet<&str> = colours.collect();
+    // Ends are black, blue and grey.
+    assert!(colours.len() >= many.len() + 2, "{colours:?}");
     let far = place.run(&["branch", "scene.toml", "--distance", "10,25"]);
     far.assert_refused(&["--distance 25 mm: out of reach: the tip of the resting whisker is 19.6"]);
     let wide = place.run(&["branch", "scene.toml", "--distance", "10,1000"]);

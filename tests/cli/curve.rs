@@ -124,6 +124,27 @@ fn a_part_of_a_sweep_is_selected() {
         .assert_refused(&["--at distance_mm=15: selects a whisker of the sweep; --distance 15"]);
 }
 
+/// A plot shows the distances that are asked for. Without any in reach it is empty, as a warning says.
+#[test]
+fn a_plot_has_no_curve_out_of_reach() {
+    let place = Place::with(SCENE);
+    let plot = ["--plot", "plot.svg", "--csv", "t.csv"];
+    let warning = "warning: the picture is empty: the rows of the table have no values for it\n";
+    for words in [
+        ["curve", "scene.toml", "--distance", "30"],
+        ["sensitivity", "scene.toml", "--distance", "30"],
+    ] {
+        let run = place.run(&[&words[..], &plot].concat());
+        assert_eq!((run.code, &*run.err), (Some(0), warning), "{run:?}");
+        assert!(place.text("t.csv").contains("out-of-reach"));
+        assert!(!place.text("plot.svg").contains("slip-off"));
+    }
+    place.quiet(&["curve", "scene.toml", "--distance", "15,30", "--plot", "plot.svg"]);
+    assert!(place.text("plot.svg").contains("slip-off"));
+    let run = place.run(&["curve", "scene.toml", "--corner", "--distance", "15"]);
+    run.assert_refused(&["--corner", "--distance"]);
+}
+
 /// Few whiskers have a colour and a name each. Of many, five are named, and neighbours have similar colours.
 #[test]
 fn a_plot_shows_all_whiskers() {

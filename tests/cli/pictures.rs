@@ -126,4 +126,13 @@ fn a_picture_has_its_size_on_paper() {
         &["--dpi 600: gives 23622 pixels", "at most 10000"],
     );
     assert!(!place.path("q.pdf").exists() && !place.path("q.png").exists());
+    let small = ["-o", "q.png", "--size", "12mm"];
+    let run = place.run(&[&["render", "scene.toml"][..], &small].concat());
+    assert_eq!((run.code, &*run.out), (Some(2), ""), "{run:?}");
+    assert!(
+        run.err.ends_with(
+            "error: --size: too small for text of 7 pt; the width must be at least 40 mm\n"
+        ),
+        "{run:?}"
+    );
 }

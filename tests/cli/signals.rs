@@ -43,7 +43,8 @@ pub fn send(signal: &str, child: &Child) {
 fn an_interrupted_run_cleans_up() {
     let place = Place::with(&long());
     let map = ["map", "scene.toml", "--engine=cpu"];
-    for (signal, code) in [("HUP", 129), ("INT", 130), ("TERM", 143)] {
+    for (signal, code) in [("HUP", 129), ("INT", 130), ("TERM", 143), ("USR1", 128 + libc::SIGUSR1)]
+    {
         let child = begun(&place, &mut place.plain_command(&map), "outputs");
         send(signal, &child);
         let run = Run::of(&child.wait_with_output().unwrap());
@@ -52,6 +53,21 @@ fn an_interrupted_run_cleans_up() {
         assert_eq!(run.err.lines().last(), Some(&*said), "{run:?}");
         assert_eq!(names(&place.path("outputs")), [""; 0]);
     }
+}
+
+/// Beyond the limit of the size of files, a run fails with a message, and no signal ends it.
+#[cfg(unix)]
+#[test]
+fn a_limit_of_the_size_of_files_is_a_failure() {
+    let place = Place::with(SCENE);
+    let map = place.plain_command(&["map", "scene.toml", "--engine=cpu"]);
+    let mut shell = Command::new("sh");
+    shell.current_dir(map.get_current_dir().unwrap());
+    shell.args(["-c", "ulimit -f 1; exec \"$0\" \"$@\""]).arg(map.get_program());
+    let run = Run::of(&shell.args(map.get_args()).output().unwrap());
+    assert_eq!((run.code, &*run.out), (Some(1), ""), "{run:?}");
+    assert!(run.err.contains("error: cannot write") && run.err.contains("large"), "{run:?}");
+    assert_eq!(unfinished(&place, "outputs"), [""; 0]);
 }
 
 /// The store is written in a temporary folder, to which threads still add files when the signal arrives.

@@ -58,6 +58,23 @@ fn a_sine_and_its_angles_give_one_course() {
     assert_eq!((again.code, again.out), (Some(0), table), "{}", again.err);
 }
 
+/// A course without an event has a table of events all the same: its header.
+#[test]
+fn a_table_without_rows_has_a_header() {
+    let place = Place::with(SCENE);
+    place.write("a.csv", "time_s,angle_deg\n0,-5\n1,-6\n");
+    for (units, column) in
+        [(&[][..], "base_moment_nnm"), (&["--units", "Nmm,mN"], "base_moment_nmm")]
+    {
+        let course = ["--angles", "a.csv", "--events", "e.csv", "--csv", "s.csv"];
+        let run = whisk(&place, &[&course[..], units].concat());
+        assert_eq!(run.code, Some(0), "{run:?}");
+        let events = place.text("e.csv");
+        assert!(events.starts_with("time_s,event,side,angle_deg,"), "{events}");
+        assert!(events.contains(column) && events.lines().count() == 1, "{events}");
+    }
+}
+
 #[test]
 fn wrong_courses_are_refused() {
     let place = Place::with(SCENE);

@@ -153,7 +153,11 @@ fn plot(scene: &Scene, points: &[BranchPoint], args: &BranchArgs) -> Plot {
         poles => {
             let name = |points: &[BranchPoint]| format!("{} mm, stable", points[0].distance_mm);
             let poles = poles.iter().enumerate();
-            poles.map(|(index, points)| (Ink::Series(index), name(points), *points)).collect()
+            poles
+                .map(|(index, points)| {
+                    (Ink::of_series(index, at_poles.len()), name(points), *points)
+                })
+                .collect()
         }
     };
     let drawn = named.iter().map(|(ink, name, points)| DrawnBranch { points, ink: *ink, name });

@@ -14,7 +14,7 @@ use whiskmap::fit;
 use whiskmap::input::CsvError;
 use whiskmap::paper::FigureError;
 use whiskmap::plan::PlanError;
-use whiskmap::render::{EncodeError, RenderError};
+use whiskmap::render::{EncodeError, RenderError, SizeError};
 use whiskmap::scene::SceneError;
 use whiskmap::store;
 use whiskmap::terminal::escaped;
@@ -54,7 +54,7 @@ pub enum Failure {
     #[error("the maps differ by more than --within allows in {0}")]
     Different(String),
     #[error(transparent)]
-    Render(#[from] RenderError),
+    Render(RenderError),
     #[error(transparent)]
     Encode(#[from] EncodeError),
     #[error(transparent)]
@@ -126,6 +126,21 @@ impl Failure {
             _ => message(&format!("error: {self}")),
         }
         self.code()
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(why: RenderError) -> Self {
+        match why {
+            RenderError::Size(why) => why.into(),
+            why => Self::Render(why),
+        }
+    }
+}
+
+impl From<SizeError> for Failure {
+    fn from(why: SizeError) -> Self {
+        Self::Input(format!("--size: {why}"))
     }
 }
 

@@ -1,13 +1,11 @@
 //! Columns that mark rows beyond the yield strain of their whisker; a scene without one has none.
 
+use super::outputs::Columns;
 use serde::{Serialize, Serializer};
 use whiskmap::yields::{PushMark, StrainMark, YieldMark};
 
 /// Heading of the columns of marks in help texts.
 pub const HEADING: &str = "More columns with whisker.yield_strain";
-
-/// Name and meaning of columns, `[column]`.
-type Columns = &'static [(&'static str, &'static str)];
 
 /// Columns of marks in help texts.
 pub const MARKS: (&str, Columns) = (HEADING, YieldMark::COLUMNS);

@@ -19,6 +19,9 @@ pub fn write(mut output: Output, bytes: &[u8]) -> Result<Option<PathBuf>, Failur
     written.map_err(unwritten(&path))
 }
 
+/// Names and meanings of the columns of a table.
+pub type Columns = &'static [(&'static str, &'static str)];
+
 /// Open CSV table of a command's output.
 pub struct OutputTable {
     table: TableFile,
@@ -48,6 +51,12 @@ impl OutputTable {
         written.map_err(unwritten(self.table.output().path()))
     }
 
+    /// Writes the header of a CSV table with these `columns`, which has no rows.
+    fn header(&mut self, columns: Columns) -> Result<(), Failure> {
+        let names: Vec<String> = columns.iter().map(|(name, _)| self.units.named(name)).collect();
+        self.table.rows([names]).map_err(unwritten(self.table.output().path()))
+    }
+
     /// Finishes the CSV table. Returns the path of a regular file, `None` for another output.
     pub fn finish(self) -> Result<Option<PathBuf>, Failure> {
         let path = self.table.output().path().to_owned();
@@ -55,14 +64,19 @@ impl OutputTable {
     }
 }
 
-/// Writes the rows of a whole CSV table, if there is one. Returns the path of a regular file.
+/// Writes the rows of a whole CSV table with these `columns`, if there is one; without rows, the header alone. Returns the path of a regular file.
 pub fn write_table<R: Serialize>(
     table: Option<OutputTable>,
+    columns: Columns,
     rows: impl IntoIterator<Item = R>,
 ) -> Result<Option<PathBuf>, Failure> {
     let Some(mut table) = table else {
         return Ok(None);
     };
+    let mut rows = rows.into_iter().peekable();
+    if rows.peek().is_none() {
+        table.header(columns)?;
+    }
     table.rows(rows)?;
     table.finish()
 }
@@ -142,7 +156,16 @@ impl OpenOutputs {
 
     /// Finishes the CSV table, draws the plot below its title, and prints the names of regular files.
     pub fn finish(self, title: String, plot: impl FnOnce() -> Plot) -> Result<(), Failure> {
-        self.finish_chart(|| Chart::single(title, plot()), [])
+        let chart = || {
+            let plot = plot();
+            if plot.is_empty() {
+                message(
+                    "warning: the picture is empty: the rows of the table have no values for it",
+                );
+            }
+            Chart::single(title, plot)
+        };
+        self.finish_chart(chart, [])
     }
 
     /// Finishes the CSV table, draws the chart, and prints the names of regular files, those of `tables` too.
@@ -151,7 +174,7 @@ impl OpenOutputs {
         chart: impl FnOnce() -> Chart,
         tables: impl IntoIterator<Item = PathBuf>,
     ) -> Result<(), Failure> {
-        self.finish_picture(|size| drawn(&chart(), size), tables)
+        self.finish_picture(|size| Ok(chart().picture(size)?), tables)
     }
 
     /// Finishes the CSV table, draws a picture of the size of the plot, and prints the names of regular files, those of `tables` too. A table
@@ -187,7 +210,7 @@ pub struct PictureFile {
 impl PictureFile {
     /// Draws a chart into the file. Returns the path of a regular file, `None` for another output.
     pub fn chart(self, chart: &Chart) -> Result<Option<PathBuf>, Failure> {
-        let picture = drawn(chart, self.size)?;
+        let picture = chart.picture(self.size)?;
         self.write(&picture)
     }
 
@@ -201,10 +224,4 @@ impl PictureFile {
         }
         write(self.output, &picture.encode(self.format)?)
     }
-}
-
-/// Draws a chart; refuses a size that is too small for it.
-fn drawn(chart: &Chart, size: PictureSize) -> Result<Picture, Failure> {
-    let refused = |why| Failure::Input(format!("--size: {why}"));
-    chart.picture(size).map_err(refused)
 }

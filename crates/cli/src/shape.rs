@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::scene::digits;
-use whiskmap::trace::{Branch, NoState, ShapePoint};
+use whiskmap::trace::{Branch, BranchPoint, NoState, ShapePoint};
 use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
@@ -95,7 +95,7 @@ pub fn run(args: &ShapeArgs, files: &mut Files) -> Result<(), Failure> {
     let points = shape.points.iter();
     outputs.rows(points.map(|point| Marked(point, YieldMark::new(&whisker, point.strain))))?;
     let mark = YieldMark::new(&whisker, shape.state.peak_strain);
-    let state_file = write_table(state_table, [Marked(&shape.state, mark)])?;
+    let state_file = write_table(state_table, BranchPoint::COLUMNS, [Marked(&shape.state, mark)])?;
     let (stroke, name) =
         if stable { (Stroke::Solid, "stable") } else { (Stroke::Dashed, "unstable") };
     let drawn =

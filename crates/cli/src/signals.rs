@@ -2,19 +2,27 @@
 
 use super::failure::message;
 use std::io::{self, IsTerminal};
+#[cfg(unix)]
+use std::sync::Arc;
 use whiskmap::store::TemporaryFiles;
 
-/// Ends the process on SIGHUP, SIGINT or SIGTERM, removes the `temporary` files, and prints `advice`. A signal that is ignored, for
-/// example by `nohup`, stays ignored.
+/// Ends the process on a signal whose default action ends it without a core dump, removes the `temporary` files, and prints `advice`. A signal that is
+/// ignored, for example by `nohup`, stays ignored. Beyond the limit of the size of files, a write fails, and no signal ends the process.
 ///
 /// # Errors
 /// If the thread that waits for signals cannot be started.
 #[cfg(unix)]
 pub fn handle(temporary: TemporaryFiles, advice: &'static str) -> io::Result<()> {
-    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
-    use signal_hook::{iterator::Signals, low_level};
+    use signal_hook::consts::{
+        SIGALRM, SIGHUP, SIGINT, SIGPROF, SIGTERM, SIGUSR1, SIGUSR2, SIGVTALRM,
+    };
+    use signal_hook::{flag, iterator::Signals, low_level};
 
-    let handled = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| !is_ignored(*signal));
+    let all = [SIGHUP, SIGINT, SIGTERM, SIGUSR1, SIGUSR2, SIGALRM, SIGVTALRM, SIGPROF];
+    let handled = all.into_iter().chain([libc::SIGXCPU]).filter(|signal| !is_ignored(*signal));
+    if !is_ignored(libc::SIGXFSZ) {
+        flag::register(libc::SIGXFSZ, Arc::default())?;
+    }
     // Without handlers, the default action ends the process, and the next run removes its leftovers.
     let Ok(mut signals) = Signals::new(handled) else {
         return Ok(());

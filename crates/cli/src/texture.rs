@@ -91,9 +91,9 @@ pub fn run(args: &TextureArgs, files: &mut Files) -> Result<(), Failure> {
     let marks = StrainMark::of_rows(&scene.whisker, &surface.asperity(), &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
     let paths = [
-        write_table(events, &found.events)?,
-        write_table(dwells, found.stays())?,
-        write_table(histogram, found.tip_histogram())?,
+        write_table(events, TextureEvent::COLUMNS, &found.events)?,
+        write_table(dwells, AsperityStay::COLUMNS, found.stays())?,
+        write_table(histogram, TipBin::COLUMNS, found.tip_histogram())?,
     ];
     summarise(&found);
     outputs.finish_chart(|| textures(&scene.title, &found), paths.into_iter().flatten())

@@ -64,19 +64,33 @@ impl ColumnUnits {
             return Ok(lines);
         };
         for (column, name) in header.iter_mut().enumerate() {
-            let quantity = Quantity::of(name);
-            let unit = self.0.iter().find(|unit| quantity.units().any(|of| of == **unit));
-            let Some((unit, (stem, _))) = unit.zip(name.rsplit_once('_')) else {
+            let Some(unit) = self.unit(name) else {
                 continue;
             };
+            let quantity = Quantity::of(name);
             for cell in cells.iter_mut().map(|line| &mut line[column]) {
                 let number = cell.parse().ok();
                 if let Some(number) = number.and_then(|number| quantity.convert(number, unit)) {
                     *cell = format!("{number:?}");
                 }
             }
-            *name = format!("{stem}_{}", unit.to_lowercase());
+            *name = self.named(name);
         }
         Ok(lines)
+    }
+
+    /// Returns the name of a `column` with its unit at the end.
+    pub fn named(&self, column: &str) -> String {
+        let unit = self.unit(column).zip(column.rsplit_once('_'));
+        unit.map_or_else(
+            || column.to_owned(),
+            |(unit, (stem, _))| format!("{stem}_{}", unit.to_lowercase()),
+        )
+    }
+
+    /// Returns the unit of a `column` that differs from its own; `None` if it keeps its own.
+    fn unit(&self, column: &str) -> Option<&'static str> {
+        let quantity = Quantity::of(column);
+        self.0.iter().copied().find(|unit| quantity.units().any(|of| of == *unit))
     }
 }

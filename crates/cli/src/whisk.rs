@@ -77,7 +77,7 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     })?;
     let marks = StrainMark::of_rows(&whisker, &scene.pole, &found.samples);
     outputs.rows(marked(&found.samples, marks))?;
-    let event_file = write_table(events, &found.events)?;
+    let event_file = write_table(events, WhiskEvent::COLUMNS, &found.events)?;
     summarise(&found);
     outputs.finish_chart(|| courses(&title(&scene, &[distance]), &found), event_file)
 }

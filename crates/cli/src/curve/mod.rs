@@ -83,7 +83,7 @@ pub struct CurveArgs {
     /// Scene file; - is standard input
     scene: PathBuf,
     /// Print only where slip-off turns into pull-off, or why it does not
-    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples", "derivatives"])]
+    #[arg(long, conflicts_with_all = ["plot", "tolerance", "samples", "derivatives", "distance"])]
     corner: bool,
     /// Compare the measured detachments in FILE with the curve; - is standard input
     #[arg(long, value_name = "FILE", group = "table", conflicts_with_all = ["corner", "tolerance", "derivatives"])]

@@ -71,12 +71,8 @@ pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot
             (_, None) => String::new(),
         };
         let is_few = last < MOST_COLOURS;
-        let ink = match is_few {
-            true => Ink::Series(place),
-            false => Ink::Ordered((255 * place / last) as u8),
-        };
         let is_shown = is_few || (0..NAMED).any(is_named);
-        (Some(ink), if is_shown { name } else { String::new() })
+        (Some(Ink::of_series(place, values.len())), if is_shown { name } else { String::new() })
     });
     let looks: Vec<(Option<Ink>, String)> = looks.collect();
     let all = drawn.iter().zip(&looks);
@@ -103,8 +99,9 @@ fn detachments(
     let reach_mm = trace::reach_mm(whisker, pole, Side::Cb);
     let grid = scene.grid.distance_mm.iter().copied();
     let mut distances: Vec<f64> = grid.clone().filter(|distance| *distance < reach_mm).collect();
-    if grid.last() >= Some(reach_mm) {
-        let last = distances.last().copied().unwrap_or_default();
+    if let Some(&last) = distances.last()
+        && grid.last() >= Some(reach_mm)
+    {
         let near = |step: usize| {
             let left = 1.0 - step as f64 / AT_TIP as f64;
             reach_mm - left * left * (reach_mm - last)

@@ -22,6 +22,15 @@ pub enum Ink {
 }
 
 impl Ink {
+    /// Returns the ink of the series at a `place` among `count` series. Each of up to seven has an ink of its own; more are ordered.
+    #[must_use]
+    pub const fn of_series(place: usize, count: usize) -> Self {
+        match count <= SERIES.len() {
+            true => Self::Series(place),
+            false => Self::Ordered((255 * place / (count - 1)) as u8),
+        }
+    }
+
     /// Returns the sRGB colour of the ink.
     #[must_use]
     pub fn rgb(self) -> Rgb {

@@ -61,6 +61,14 @@ pub struct Plot {
 }
 
 impl Plot {
+    /// Returns true if the plot has neither bands nor discs, dots, notes or points of lines.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        let has_points = self.lines.iter().any(|line| !line.points.is_empty());
+        let others = [self.bands.len(), self.discs.len(), self.dots.len(), self.notes.len()];
+        !has_points && others == [0; 4]
+    }
+
     /// Replaces all numbers on logarithmic axes by their decimal logarithms, NaN where there is none.
     fn logarithms(&self) -> Self {
         let on = |axis: usize, value: f64| match self.logarithmic[axis] {

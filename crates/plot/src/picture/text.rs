@@ -50,7 +50,7 @@ pub struct TextBlock {
 
 impl TextBlock {
     /// Sets a text into lines of length `room`: in one line, shrunk from `largest` if necessary, or in several of the smallest size. A line
-    /// does not end beside `=` or before a unit, unless the name and its value are longer than a line. Words that are longer than a line are cut.
+    /// does not end beside `=`, before a unit or between two words in parentheses, unless the name and its value are longer than a line. Words that are longer than a line are cut.
     pub fn new(text: &str, largest: f64, room: f64) -> Self {
         let size = shrunk(text, largest, room);
         if fits(text, size, room) {
@@ -96,6 +96,12 @@ fn kept_together(text: &str) -> Vec<Vec<&str>> {
         let is_unit = UNITS.contains(&word.trim_end_matches([',', ';', ')', '.']));
         match groups.last_mut() {
             Some(last) if word == "=" || is_unit || last.last() == Some(&"=") => last.push(word),
+            // A unit of two parts, such as (nN m).
+            Some(last)
+                if word.ends_with(')') && last.last().is_some_and(|word| word.starts_with('(')) =>
+            {
+                last.push(word);
+            }
             _ => groups.push(vec![word]),
         }
     }
@@ -120,6 +126,12 @@ mod tests {
         }
         assert_eq!(fitted("wide", 20.0, 1.0).0, ELLIPSIS);
         assert_eq!(fitted("", 20.0, -20.0).0, "");
+    }
+
+    #[test]
+    fn a_unit_of_two_parts_stays_in_one_line() {
+        let lines = TextBlock::new("bending moment at the base (nN m)", 20.0, 270.0).lines;
+        assert_eq!(lines, ["bending moment at the base", "(nN m)"]);
     }
 
     #[test]
