@@ -43,15 +43,17 @@ impl SheetSamples {
             let contacts = nodes(case, SPACING, folds)?;
             Some(sampled(contacts, case.coarsely(), None))
         };
-        let first = coarse(Folds::Predicted).filter(|samples| samples.panels.is_some());
-        first.or_else(|| {
-            // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
-            let fine = case.finely();
-            let contacts = nodes(case, NARROW_SPACING, Folds::Marched);
-            let both = contacts.zip(nodes(fine, NARROW_SPACING, Folds::Marched));
-            let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));
-            again.or_else(|| coarse(Folds::Marched))
-        })
+        // A contact without a fold has none at other spacings, either.
+        let first = coarse(Folds::Predicted)?;
+        if first.panels.is_some() {
+            return Some(first);
+        }
+        // Near the tip of a perfect cone, coarse trajectories have other folds: which ones are first is shown by fine ones.
+        let fine = case.finely();
+        let contacts = nodes(case, NARROW_SPACING, Folds::Marched);
+        let both = contacts.zip(nodes(fine, NARROW_SPACING, Folds::Marched));
+        let again = both.map(|(contacts, folds)| sampled(contacts, fine, Some(folds)));
+        again.or_else(|| coarse(Folds::Marched))
     }
 
     /// Returns true if a `load`, positive toward the pole, lies between first touch and the fold of the contact at `tau`.
