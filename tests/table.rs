@@ -37,6 +37,29 @@ fn values(panel: &Panel) -> (&[u32], &[u32], Vec<u32>) {
     (&panel.regime, &panel.status, numbers.collect())
 }
 
+/// Warnings name the rows of numbers that look like another unit: three of them, each once.
+#[test]
+fn warnings_name_their_rows() {
+    let row = |(name, um): (&str, f64)| {
+        format!("{{ name = \"{name}\", length_mm = 20, base_radius_um = {um}, taper = 0.9 }}")
+    };
+    let rows = [("A", 30.0), ("B", 3e4), ("C", 0.03), ("D", 25.0), ("E", 4e4), ("F", 5e4)];
+    let rows = rows.map(row).join(", ");
+    let warnings = parse(&scene(&format!("[{rows}]"))).unwrap().warnings();
+    let expected = [
+        "whiskers.table: B: whisker.base_radius_um = 30000 um: expected 1e-5 to 0.1 of whisker.length_mm = 20 mm, is 1.5e0",
+        "whiskers.table: C: whisker.base_radius_um = 0.03 um: expected 1e-5 to 0.1 of whisker.length_mm = 20 mm, is 1.5e-6",
+        "whiskers.table: E: whisker.base_radius_um = 40000 um",
+    ];
+    for start in expected {
+        let found = warnings.iter().filter(|warning| warning.starts_with(start));
+        assert_eq!(found.count(), 1, "{warnings:?}");
+    }
+    assert!(warnings.iter().all(|warning| !warning.contains(": A:") && !warning.contains(": F:")));
+    let last = "whiskers.table: rows with such warnings that are not named: 1";
+    assert_eq!(warnings.last().map(String::as_str), Some(last));
+}
+
 #[test]
 fn every_row_is_the_map_of_its_whisker() {
     let table = parse(&scene(ROWS)).unwrap();

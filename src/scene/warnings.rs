@@ -1,9 +1,12 @@
 //! Warnings about numbers that a scene accepts, but that look like numbers in another unit.
 
 use super::data::SceneData;
+use super::grid::Grid;
 use super::limits::{digits, rounded};
 use super::parameter::Parameter;
 use super::smooth::{SmoothRadii, scatter};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Radius over length. Whiskers of rats lie between 1e-4 (at the tip) and 0.01; a thicker rod is no beam.
 const SLENDER: [f64; 2] = [1e-5, 0.1];
@@ -42,6 +45,9 @@ const FORCE_UNITS: [(&str, f64); 6] = [
 /// Forces in uN, from below the noise of any sensor to a kilonewton.
 const FORCE_UN: [f64; 2] = [1e-6, 1e9];
 
+/// Number of rows of a table of whiskers whose warnings are printed.
+const NAMED_ROWS: usize = 3;
+
 /// Key of a number of the scene, and its least and greatest value over the sweep. Values of 0 do not count; NaN if all are 0.
 struct SceneNumber {
     key: String,
@@ -64,7 +70,8 @@ impl SceneData {
     /// The numbers are radii below 1e-5 or above 0.1 of the length, moduli outside 0.1 to 250 GPa, and forces outside 1e-6 to 1e9 uN.
     /// At least 12 measured radii are compared with their neighbours, too: a scatter of 0.5 % of the radius at the base is named. All
     /// values of sweep axes count; of measured radii the largest one does. A message names another unit only if the number in that unit
-    /// is as expected.
+    /// is as expected. Of a table of whiskers, the first three rows with warnings are named, each with
+    /// its first one.
     ///
     /// The force is `E I / L^2` with the second moment of area at the base: a cylinder bends by 1 radian under twice that
     /// force across its tip, to first order.
@@ -81,11 +88,37 @@ impl SceneData {
     /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
+        if !self.table.is_empty() {
+            return self.table_warnings();
+        }
         let length = self.number(Parameter::LengthMm, self.whisker.length_mm);
         let radii = self.radii();
         let radii = radii.iter().filter_map(|radius| thickness(radius, &length));
         let others = self.modulus().into_iter().chain(self.force());
         radii.chain(others).chain(self.jumps()).collect()
+    }
+
+    /// Warnings about rows of the table of whiskers.
+    fn table_warnings(&self) -> Vec<String> {
+        let mut seen = BTreeSet::new();
+        let warned = self.whiskers().flatten().filter_map(|swept| {
+            // With other axes, the sweep has each row several times.
+            let name = swept.place.whisker().unwrap_or_default();
+            if !seen.insert(name.to_owned()) {
+                return None;
+            }
+            let grid = Grid { sweep: Vec::new(), ..self.grid.clone() };
+            let (whisker, pole, table) = (swept.whisker, swept.pole, Arc::default());
+            let alone = Self { whisker, pole, grid, table, ..self.clone() };
+            let first = alone.warnings().into_iter().next();
+            first.map(|warning| format!("whiskers.table: {name}: {warning}"))
+        });
+        let rows: Vec<String> = warned.collect();
+        let others = rows.len().saturating_sub(NAMED_ROWS);
+        let others = (others > 0).then(|| {
+            format!("whiskers.table: rows with such warnings that are not named: {others}")
+        });
+        rows.into_iter().take(NAMED_ROWS).chain(others).collect()
     }
 
     /// A warning about measured radii that jump by more than their neighbours explain.
