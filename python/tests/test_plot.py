@@ -37,6 +37,33 @@ def test_every_plot_returns_artists_of_its_axes(small, cone):
     plt.gcf().canvas.draw()
 
 
+def test_a_single_detachment_is_a_dot(cone):
+    """Each curve leaves ink, also that of one point, which a line does not show."""
+    for distances, kinds in (([15.0], {"slip-off"}), ([15.0, 16.0, 17.0, 18.0, 19.3], {"slip-off", "pull-off"})):
+        ends = wm.curve(cone.replace(distance_mm=distances)).sel(side="cb")
+        assert set(ends.kind.values) == kinds
+        for kind in kinds:
+            figure, axes = plt.subplots()
+            wm.plot.curve(ends.where(ends.kind == kind), ax=axes, color="magenta")
+            figure.canvas.draw()
+            assert (np.asarray(figure.canvas.buffer_rgba())[..., :3] == (255, 0, 255)).all(axis=-1).any(), kind
+    lines = wm.plot.curve(ends, ax=plt.subplots()[1])
+    assert [(line.get_marker(), line.get_markevery()) for line in lines] == [("None", None), ("o", [4])]
+
+
+def test_a_variable_that_no_axis_shows_is_refused(cone):
+    whisk = wm.whisk(cone, 15.66, [0, 0.1], [0, 1])
+    for draw, own in (
+        (lambda name: wm.plot.curve(wm.curve(cone), x=name), "x"),
+        (lambda name: wm.plot.branch(wm.branch(cone, 15.66), y=name), "y"),
+        (lambda name: wm.plot.whisk(whisk, y=name), "y"),
+        (lambda name: wm.plot.force(wm.force(cone, ROOT / "scenes/frames.csv"), y=name), "y"),
+    ):
+        for name in ("kind", "mark", "reason", "forc_un"):
+            with pytest.raises(ValueError, match=f"^{own} = '{name}': must be one of .*force_un"):
+                draw(name)
+
+
 def test_courses_forces_and_fits_are_drawn(cone):
     _, axes = plt.subplots(1, 3)
     time = np.arange(201) / 1000

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.container import BarContainer
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
+    from numpy.typing import NDArray
 
     from whiskmap._fits import Fit
     from whiskmap._motion import Whisk
@@ -88,7 +89,7 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
         Variable along the horizontal axis; the vertical axis is the distance.
     ax : matplotlib.axes.Axes, optional
     **line
-        Properties of the lines.
+        Properties of the lines. A detachment without a neighbour of its kind is a dot.
 
     Returns
     -------
@@ -97,9 +98,10 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
     Raises
     ------
     ValueError
-        If the dataset is not one of `curve`, or has several whiskers.
+        If the dataset is not one of `curve`, or has several whiskers, or `x` is no variable of numbers.
     """
     ds = _single(_of(ds, "curve", "kind"), ("side", "distance_mm"))
+    _check_quantity(ds, "x", x)
     axes = _axes(ax)
     colours, lines, named = inks(), [], set()
     for side in np.atleast_1d(ds["side"].values):
@@ -107,9 +109,9 @@ def curve(ds: xr.Dataset, *, x: str = "push_angle_deg", ax: Axes | None = None, 
         for kind in ("slip-off", "pull-off"):
             values = own[x].where(own["kind"] == kind)
             if values.notnull().any():
-                label = None if kind in named else kind
+                look = {"color": colours[kind], "label": None if kind in named else kind, **_dots(values.values)}
                 named.add(kind)
-                lines += axes.plot(values, own["distance_mm"], **{"color": colours[kind], "label": label} | line)
+                lines += axes.plot(values, own["distance_mm"], **look | line)
     axes.set(xlabel=axis_title(x, True), ylabel=DISTANCE)
     return lines
 
@@ -131,7 +133,13 @@ def branch(ds: xr.Dataset, *, y: str = "arc_length_mm", ax: Axes | None = None, 
     -------
     list of matplotlib.artist.Artist
         The lines, then the dots.
+
+    Raises
+    ------
+    ValueError
+        If `y` is no variable of numbers.
     """
+    _check_quantity(ds, "y", y)
     axes = _axes(ax)
     colours = inks()
     artists: list[Artist] = []
@@ -231,7 +239,13 @@ def whisk(found: Whisk, *, y: str = "force_un", ax: Axes | None = None, **line: 
     -------
     list of matplotlib.artist.Artist
         The line, then the dots: touches open, slip-offs black, pull-offs blue, others grey.
+
+    Raises
+    ------
+    ValueError
+        If `y` is no variable of numbers.
     """
+    _check_quantity(found.samples, "y", y)
     axes, colours = _axes(ax), inks()
     samples, events = found.samples, found.events
     artists: list[Artist] = list(axes.plot(samples["time_s"], samples[y], **{"color": colours["slip-off"]} | line))
@@ -252,7 +266,7 @@ def force(ds: xr.Dataset, *, y: str = "force_un", ax: Axes | None = None, **line
     ds : xarray.Dataset
         A dataset of `force`.
     y : str
-        Variable along the vertical axis: "force_un", "base_force_x_un", "base_force_y_un" or "base_moment_nnm".
+        Variable along the vertical axis, such as "force_un", "base_force_x_un", "base_force_y_un" or "base_moment_nnm".
     ax : matplotlib.axes.Axes, optional
     **line
         Properties of the line, which breaks where a frame has no force.
@@ -261,7 +275,13 @@ def force(ds: xr.Dataset, *, y: str = "force_un", ax: Axes | None = None, **line
     -------
     list of matplotlib.artist.Artist
         The line, then the band.
+
+    Raises
+    ------
+    ValueError
+        If `y` is no variable of numbers.
     """
+    _check_quantity(ds, "y", y)
     axes, colour = _axes(ax), inks()["slip-off"]
     artists: list[Artist] = list(axes.plot(ds["time_s"], ds[y], **{"color": colour} | line))
     stem, unit = y.rsplit("_", 1)
@@ -327,6 +347,20 @@ def _single(data: _Data, kept: Sequence[str]) -> _Data:
         chosen = ", ".join(f"{name}={data[name].values[:1].tolist()[0]!r}" for name in several if data.sizes[name])
         raise ValueError(f"ds: has {counts}, must have one: select one, as by ds.sel({chosen})")
     return data.squeeze([name for name in data.dims if name not in kept])
+
+
+def _check_quantity(ds: xr.Dataset, argument: str, name: str) -> None:
+    """Refuse a name, the value of `argument`, that is no variable of numbers."""
+    names = [str(own) for own, values in ds.data_vars.items() if values.dtype.kind == "f"]
+    if name not in names:
+        raise ValueError(f"{argument} = {name!r}: must be one of {', '.join(names)}")
+
+
+def _dots(values: NDArray[Any]) -> dict[str, Any]:
+    """Return the properties of a line that shows numbers between NaNs, of which a line without markers shows nothing, as dots."""
+    is_known = np.pad(np.atleast_1d(~np.isnan(values)), 1)
+    is_alone = is_known[1:-1] & ~is_known[:-2] & ~is_known[2:]
+    return {"marker": "o", "markevery": np.flatnonzero(is_alone).tolist()} if is_alone.any() else {}
 
 
 def _axes(ax: Axes | None) -> Axes:
