@@ -167,9 +167,10 @@ def detachment(
     variables = _variables(jac, tuple(parameters))
     is_cb = _is_cb(side)
     has_both = isinstance(side, str) and side.lower() == "both"
+    shape = _shape(arrays if has_both else arrays | {"side": is_cb})
     if has_both:
         arrays = {name: array[..., None] for name, array in arrays.items()}
-    shape = _shape(arrays | {"side": is_cb})
+        shape += is_cb.shape
     fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
     missing = {int(place): f"{name} is missing" for name, array in flat.items() for place in np.flatnonzero(np.isnan(array))}
