@@ -3,6 +3,7 @@
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import whiskmap as wm
 from test_motion import CONE, same, table
@@ -31,6 +32,21 @@ def test_missing_numbers_keep_their_place(cone, readings):
         found = wm.locate(cone, readings)
     missing = found.isel(number=np.flatnonzero(found.reading.values == 2))
     assert missing.reason.values.tolist() == ["incomplete"] and np.isnan(missing.distance_mm.values).all()
+
+
+def test_one_reading_may_be_numbers(cone, readings):
+    one = {name: float(readings[name][1]) for name in readings}
+    xr.testing.assert_identical(wm.locate(cone, one), wm.locate(cone, {name: [value] for name, value in one.items()}))
+
+
+def test_every_missing_number_is_a_gap(cone, readings):
+    for missing in (None, np.nan, pd.NA, pd.NaT, np.datetime64("NaT"), np.ma.masked):
+        given = {name: [values[0], missing, values[2]] for name, values in readings.items()}
+        with pytest.warns(wm.SceneWarning, match="1 of 3 readings have no state"):
+            assert "incomplete" in wm.locate(cone, given).reason.values
+    masked = {name: np.ma.masked_array(values, [False, True, False]) for name, values in readings.items()}
+    with pytest.warns(wm.SceneWarning, match="1 of 3 readings have no state"):
+        assert "incomplete" in wm.locate(cone, masked).reason.values
 
 
 def test_bad_readings_are_refused(cone, readings):

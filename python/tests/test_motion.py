@@ -154,7 +154,7 @@ def test_a_refused_number_of_an_array_is_named(cone):
     frame.loc[4, "at_arc_length_mm"] = 99
     with pytest.raises(ValueError, match=r"^frames\[4\]: at_arc_length_mm = 99"):
         wm.force(cone, frame)
-    with pytest.raises(TypeError, match=r"frames\['time_s'\]\[1\] = \(\): must be a number"):
+    with pytest.raises(TypeError, match=r"frames\['time_s'\]\[1\] = \(\): must be a text or a number"):
         wm.force(cone, {"time_s": np.array([0.0, ()], dtype=object)})
 
 def test_gaps_are_those_of_the_program(cone, tmp_path):
@@ -174,6 +174,26 @@ def test_gaps_are_those_of_the_program(cone, tmp_path):
     frame.loc[50, "curvature_per_mm"] = np.nan
     with pytest.warns(wm.SceneWarning, match="frames have no force"):
         assert wm.force(cone, frame).reason[50] == "missing"
+
+
+def test_missing_angles_are_gaps(cone):
+    time, angle = sine(14, 5, 0.2)
+    missing = np.isin(np.arange(time.size), [20, 21, 90])
+    with pytest.warns(wm.SceneWarning, match="missing angles: 3"):
+        expected = wm.whisk(cone, 15.66, time, np.where(missing, np.nan, angle), bridge_s=0.003)
+    for given in (
+        [None if lost else value for value, lost in zip(angle, missing)],
+        [pd.NA if lost else value for value, lost in zip(angle, missing)],
+        pd.Series(angle, dtype="Float64").mask(missing),
+        np.ma.masked_array(angle, missing),
+    ):
+        with pytest.warns(wm.SceneWarning, match="missing angles: 3"):
+            xr.testing.assert_identical(wm.whisk(cone, 15.66, time, given, bridge_s=0.003).samples, expected.samples)
+    with pytest.raises(TypeError, match=r"angle_deg\[1\] = '1 deg': must be a number"):
+        wm.whisk(cone, 15.66, [0, 1], [None, "1 deg"])
+    with pytest.raises(TypeError, match="angle_deg: must be real numbers"):
+        wm.whisk(cone, 15.66, [0, 1], np.ma.masked_array(["0", "1"], [False, True]))
+
 
 def test_a_baseline_is_that_of_the_program(cone):
     frame = pd.read_csv(FRAMES, comment="#")

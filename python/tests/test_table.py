@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pickle
+import re
 
 import numpy as np
 import pandas as pd
@@ -60,6 +61,23 @@ def test_tables_survive_texts_pickles_and_replacements(pad, tmp_path):
     traced["base_radius_um"], traced["tip_radius_um"] = [np.nan, 30], [np.nan, 2]
     both = pad.replace(table=traced)
     assert both.refused == {} and both.select("A").whisker.profile and both.select("B").rest_fit.degree >= 0
+
+
+@pytest.mark.parametrize("dtype", [int, float, np.int8, "Int64", str, object])
+def test_names_may_be_whole_numbers(pad, dtype):
+    """A number from a data frame is the name of its digits, also where pandas makes it a float."""
+    numbers = pd.Series([1, 2, 3, 4, 5])
+    sizes = {"length_mm": [16.0, 17.0, 18.0, 19.0, 20.0], "base_radius_um": [30.0] * 5, "tip_radius_um": [2.0] * 5}
+    scene = pad.replace(table=pd.DataFrame({"name": numbers.astype(dtype), **sizes}), pole_radius_mm=0.25)
+    assert scene.coords["whisker"].tolist() == ["1", "2", "3", "4", "5"]
+    assert scene.select(1) == scene.select("1") and scene.select(np.int64(5)).whisker.length_mm == 20
+    ends = wm.curve(scene).sel(side="cb", distance_mm=10)
+    points = pd.DataFrame({"whisker": numbers.astype(dtype), "side": "cb", "distance_mm": 10.0, "push_angle_deg": ends.push_angle_deg.values})
+    fit = wm.fit(scene, points, ["pole_radius_mm"])
+    assert abs(fit.points.residual_deg).max() < 1e-3
+    for name in (True, None, [1]):
+        with pytest.raises(TypeError, match=re.escape(f"whisker = {name}: must be a text or a number")):
+            scene.select(name)
 
 
 def test_wrong_tables_are_refused(pad):

@@ -84,6 +84,28 @@ def test_fits_and_designs_are_the_programs(cone):
     assert design.values == pytest.approx([4.063], abs=1e-3) and set(design.ends.kind.values) >= {"slip-off"}
 
 
+def test_a_shape_may_have_two_points(cone):
+    ds = wm.shape(cone, 15.66, 10, points=2)
+    same(ds, table("shape", CONE, "--distance", 15.66, "--push-angle", 10, "--points", 2))
+    # Base and tip, and the contact.
+    assert ds.sizes["point"] == 3
+
+
+def test_a_kind_may_be_missing(cone):
+    """Every missing value of a data frame, and every text of one in a file, is a point of unknown kind."""
+    frame = pd.read_csv(ROOT / "scenes/cone_points.csv", comment="#")
+    free = ["tip_radius_um", "parabola_per_mm"]
+    expected = wm.fit(cone, frame.drop(columns="kind", errors="ignore"), free)
+    for missing in (None, np.nan, pd.NA, pd.NaT, np.datetime64("NaT"), np.ma.masked, "", "NaN", "nan", "NA", "N/A", "null", "none"):
+        found = wm.fit(cone, {**frame.to_dict("list"), "kind": ["slip-off", *[missing] * (len(frame) - 1)]}, free)
+        assert found.points.kind.values.tolist() == ["slip-off"] + [""] * (len(frame) - 1), missing
+        xr.testing.assert_identical(found.estimates, expected.estimates)
+    for kinds in (pd.Series([pd.NaT] * len(frame)), pd.Categorical(["slip-off"] + [None] * (len(frame) - 1)), pd.Series([None] * len(frame), dtype="string")):
+        xr.testing.assert_identical(wm.fit(cone, frame.assign(kind=kinds), free).estimates, expected.estimates)
+    with pytest.raises(ValueError, match=r"points\[0\]: kind = slip: must be slip-off, pull-off or empty"):
+        wm.fit(cone, frame.assign(kind="slip"), free)
+
+
 def test_robust_fits_are_those_of_scipy(cone):
     optimize = pytest.importorskip("scipy.optimize")
     frame = pd.read_csv(ROOT / "scenes/cone_points.csv", comment="#")

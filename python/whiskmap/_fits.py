@@ -76,9 +76,9 @@ def fit(
         A scene of one whisker, or of a table of whiskers if the points name theirs.
     points : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `side` ("cb", "cf"), `distance_mm`, `push_angle_deg` or `push_chord_deg`, and
-        if known `kind` ("slip-off", "pull-off") and `sd_deg`, the standard deviation of the angle. A point with a number that is NaN or
-        None is left out. A column `whisker` names the row of the scene's table that a point belongs to; all whiskers share the fitted
-        values.
+        if known `kind` ("slip-off", "pull-off") and `sd_deg`, the standard deviation of the angle. Missing values are NaN, None, NaT, NA or
+        masked: a point without a number is left out, and one without a `kind` counts. A column `whisker` names the row of the scene's
+        table that a point belongs to, as texts or whole numbers; all whiskers share the fitted values.
     free : sequence of str
         Names of the parameters to fit, such as ``["tip_radius_um", "parabola_per_mm"]``.
     loss : {"squares", "soft-l1", "huber"}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 import xarray as xr
@@ -32,7 +32,8 @@ def locate(
         A scene of one whisker without friction. Its grid is not used.
     readings : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: at least two of `base_moment_nnm`, `base_force_x_un` and `base_force_y_un`, in the frame of
-        the base, and optionally `angle_deg`, the angle of the base in the laboratory. A number that was not measured is NaN or None.
+        the base, and optionally `angle_deg`, the angle of the base in the laboratory. Columns of one reading may be numbers. A number that
+        was not measured is NaN, None, NA or masked.
     moment_sd_nnm, force_sd_un : float, optional
         Standard deviations of the sensor's moment, and of each component of its force; both or none.
     columns : mapping of str, optional
@@ -57,22 +58,12 @@ def locate(
     SceneWarning
         If readings have no state.
     """
-    checked, given = _checked(scene), readings
-    deviations = _deviations(moment_sd_nnm, force_sd_un)
-    if not isinstance(readings, (str, os.PathLike)) and hasattr(readings, "keys"):
-        readings = {str(name): _or_nan(readings[name]) for name in readings.keys()}
-    with naming_rows("readings", given):
-        text, origin = csv_text("readings", readings), origin_of("readings", given)
+    checked, deviations = _checked(scene), _deviations(moment_sd_nnm, force_sd_un)
+    with naming_rows("readings", readings):
+        text, origin = csv_text("readings", readings), origin_of("readings", readings)
         found, warning = _whiskmap.locate(checked, text, origin, own_names(columns), deviations)
     warn([warning])
     return xr.Dataset(variables(found, ("number",), (-1,)), rest_coords(scene), attributes(scene))
-
-
-def _or_nan(values: Iterable[Any]) -> Any:
-    """A column, with the text `nan` for numbers that were not measured: a row of empty cells would be left out."""
-    import numpy as np
-
-    return np.array(["nan" if value is None or value != value else value for value in values], dtype=object)
 
 
 def _deviations(moment_sd_nnm: float | None, force_sd_un: float | None) -> tuple[float, float] | None:

@@ -13,7 +13,7 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, own_names, real_array
+from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, own_names, real_array, real_array_or_nan
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -101,8 +101,8 @@ def whisk(
         Times of the samples in s, which grow; at least two.
     angle_deg : array_like
         Angle of the base at each of the times: 0 at first touch on CB, growing with the push there. It changes along straight lines
-        between samples. NaN where it is missing: that sample has no state. After such a gap the course is undecided until only one state
-        is possible.
+        between samples. NaN, None, NA or masked where it is missing: that sample has no state. After such a gap the course is undecided
+        until only one state is possible.
     start : {"contact", "free"}, optional
         State at the first angle that is not missing. In "contact", the base has pushed the whisker there from first touch: on CB if that side holds it, otherwise
         on CF. A "free" whisker beyond first touch has passed the pole; that is assumed, with a warning, if left out.
@@ -129,7 +129,7 @@ def whisk(
         If a free whisker beyond first touch is assumed, gaps are bridged or not, or samples are undecided.
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
-    course = (real_array("time_s", time_s), real_array("angle_deg", angle_deg))
+    course = (real_array("time_s", time_s), real_array_or_nan("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
     samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
         checked, distance, (time, angle), start, number("bridge_s", bridge_s), _optional("curvature_at_mm", curvature_at_mm)
@@ -189,8 +189,8 @@ def force(
     frames : path, mapping or pandas.DataFrame
         A CSV file, or columns of equal length: `time_s`, `curvature_per_mm`, `at_arc_length_mm`, `contact_x_mm`, `contact_y_mm` in the
         frame of the base with the first axis `axis`, and without `model` also `contact_angle_deg`; if known `at_x_mm` and `at_y_mm`. The position of the contact
-        is NaN or None in frames without contact, or a column `contact` is 0 there and 1 elsewhere. Other numbers are NaN or None where
-        they are missing.
+        is missing in frames without contact, or a column `contact` is 0 there and 1 elsewhere. Missing numbers are NaN, None, NA or
+        masked.
     model : bool
         True computes the stable state of the full model that has this curvature, instead of the moment over the lever.
     baseline_s : tuple of float, optional

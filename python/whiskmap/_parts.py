@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Literal, Union
 
-from whiskmap._values import is_missing, number, number_or_nan, numbers, unique_names
+from whiskmap._values import is_missing, number, number_or_nan, numbers, text_of, unique_names, whole
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import parameters, unused_columns
 
@@ -57,9 +57,7 @@ class Range:
     scale: Literal["linear", "log"] = "linear"
 
     def __post_init__(self) -> None:
-        if isinstance(self.count, bool) or not hasattr(self.count, "__index__"):
-            raise TypeError(f"count = {self.count!r}: must be a whole number")
-        set_field(self, "count", int(self.count.__index__()))
+        set_field(self, "count", whole("count", self.count))
         if self.count < 1:
             raise ValueError(f"count = {self.count}: must be at least 1")
 
@@ -277,7 +275,7 @@ def _row(place: str, row: Any) -> tuple[str, list[tuple[str, float]], Any, Any]:
         raise ValueError(f"{place}: must have a name")
     numbers = [(own, number_or_nan(f"{place}[{own!r}]", value)) for own, value in row.items() if own in _NUMBERS]
     profile, points = (_pairs_or_none(f"{place}[{own!r}]", own, row.get(own)) for own in PAIRS)
-    name = "" if is_missing(row["name"]) else str(row["name"])
+    name = "" if is_missing(row["name"]) else text_of(f"{place}['name']", row["name"])
     return name, numbers, profile, points
 
 

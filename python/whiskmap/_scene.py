@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from whiskmap._description import PARAMETERS, build, order_of, range_of, resembling, set_parameter
 from whiskmap._parts import PAIRS, Grid, Pole, Surface, Whisker, axis_of, degree_of, is_smooth, pairs_of, rows_of
-from whiskmap._values import number
+from whiskmap._values import number, text_of
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import CheckedScene, coordinates
 
@@ -71,8 +71,8 @@ class Scene:
         A rough surface, for `texture`.
     table : pandas.DataFrame, mapping of columns, or list of mappings, optional
         Whiskers: a `name`, and parameters such as `length_mm`, whose numbers replace those of `whisker`; `profile` and `rest_points` have
-        arrays, or None. A row with a missing number, NaN or None, has no whisker: `refused` has the reason. The table is the first axis
-        of results, `whisker`.
+        arrays, or None. A name may be a whole number: 1, or the 1.0 of a data frame, is "1". A row with a missing number, NaN, None or NA,
+        has no whisker: `refused` has the reason. The table is the first axis of results, `whisker`.
 
     Raises
     ------
@@ -114,7 +114,7 @@ class Scene:
         Raises
         ------
         OSError
-            If the file cannot be read.
+            If the file cannot be read, as where the path is that of a folder.
         SceneError
             If it is no scene.
         """
@@ -245,15 +245,17 @@ class Scene:
         """Reasons of the rows of the table that have no whisker, by name."""
         return dict(self._checked.refused())
 
-    def select(self, whisker: str) -> Scene:
-        """Return the scene with one whisker of the table, by its name.
+    def select(self, whisker: str | int) -> Scene:
+        """Return the scene with one whisker of the table, by its name; a whole number is the name of its digits.
 
         Raises
         ------
         KeyError
             If there is no such whisker, or its row has none.
+        TypeError
+            If the name is neither a text nor a number.
         """
-        return Scene._of(self._checked.whisker(whisker))
+        return Scene._of(self._checked.whisker(text_of("whisker", whisker)))
 
     @property
     def coords(self) -> dict[str, NDArray[Any]]:

@@ -23,14 +23,37 @@ def number(name: str, value: Any) -> float:
         raise TypeError(f"{name} = {value!r}: must be one number") from None
 
 
+def whole(name: str, value: Any) -> int:
+    """Return a whole number; a fraction, a truth or a text is refused by the name of its argument."""
+    if isinstance(value, bool) or not hasattr(value, "__index__"):
+        raise TypeError(f"{name} = {value!r}: must be a whole number")
+    return int(value.__index__())
+
+
 def number_or_nan(name: str, value: Any) -> float:
-    """Return a number as `number` does, and NaN for a missing one: None, or NA of pandas."""
+    """Return a number as `number` does, and NaN for a missing one."""
     return float("nan") if is_missing(value) else number(name, value)
 
 
 def is_missing(value: Any) -> bool:
-    """Return True for a missing value: None, NaN, or NA of pandas."""
-    return value is None or type(value).__name__ in ("NAType", "NaTType") or (isinstance(value, float) and value != value)
+    """Return True for a missing value: None, NaN, NaT, NA of pandas, or a masked value of numpy."""
+    if value is None or type(value).__name__ in ("NAType", "MaskedConstant"):
+        return True
+    # An array is not missing as a whole.
+    differs = value != value
+    return getattr(differs, "ndim", 0) == 0 and bool(differs)
+
+
+def text_of(name: str, value: Any) -> str:
+    """Return a text, or a number as one: a whole number by its digits, also where a data frame has made it a float."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool) or not hasattr(value, "__float__"):
+        raise TypeError(f"{name} = {value!r}: must be a text or a number")
+    if hasattr(value, "__index__"):
+        return str(value.__index__())
+    own = number(name, value)
+    return f"{own:.0f}" if own.is_integer() and abs(own) < 2**53 else repr(own)
 
 
 def unique_names(name: str, table: Any) -> list[Any]:
@@ -68,6 +91,19 @@ def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{name}: must be real numbers without a unit, has the type {array.dtype}")
     return array.astype(np.float64, copy=False)
+
+
+def real_array_or_nan(name: str, values: ArrayLike) -> NDArray[Any]:
+    """Return an array as `real_array` does, with NaN for missing values."""
+    import numpy as np
+
+    if isinstance(values, np.ma.MaskedArray):
+        return np.where(np.ma.getmaskarray(values), np.nan, real_array(name, values.data))
+    array = np.asarray(values)
+    if array.dtype.kind != "O":
+        return real_array(name, array)
+    known = [number_or_nan(f"{name}[{index}]", value) for index, value in enumerate(array.flat)]
+    return np.reshape(known, array.shape)
 
 
 def side_of(side: Any, *, is_one: bool = False) -> str:
@@ -115,9 +151,7 @@ def own_names(columns: Mapping[str, str] | None) -> list[tuple[str, str]]:
 
 
 def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> str:
-    """Return the text of a CSV file, or columns by name as such a text; None is an empty cell. Coordinates of a dataset are columns."""
-    import numpy as np
-
+    """Return the text of a CSV file, or columns by name as such a text. Coordinates of a dataset are columns."""
     if isinstance(columns, (str, os.PathLike)):
         return Path(columns).read_text(encoding="utf-8-sig")
     table: Any = columns
@@ -125,7 +159,7 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
         table = {own: values for own, values in table.variables.items() if values.ndim}
     if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
-    listed = {str(own): list(np.atleast_1d(np.asarray(table[own]))) for own in unique_names(name, table)}
+    listed = {str(own): _listed(table[own]) for own in unique_names(name, table)}
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"{name}: columns must be equally long, have {lengths}")
@@ -134,8 +168,17 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
     return "\n".join(",".join(row) for row in [tuple(listed), *cells]) + "\n"
 
 
+def _listed(values: Any) -> list[Any]:
+    """Return the values of a column; a single value is a column of one."""
+    import numpy as np
+
+    # An array of a list would turn numbers beside texts into texts.
+    return list(values) if isinstance(values, (list, tuple)) else list(np.atleast_1d(np.asanyarray(values)))
+
+
 def _cell(name: str, value: Any) -> str:
-    if value is None:
-        return ""
-    text = value if isinstance(value, str) else repr(number(name, value))
+    if is_missing(value):
+        # A row of empty cells would be left out.
+        return "nan"
+    text = str(int(value)) if type(value).__name__ in ("bool", "bool_") else text_of(name, value)
     return '"' + text.replace('"', '""') + '"'

@@ -31,8 +31,8 @@ impl CsvError {
     }
 }
 
-/// Cells of measurements that stand for a missing value, in either case, beside `NaN`.
-const MISSING: [&str; 5] = ["", "NA", "N/A", "null", "none"];
+/// Cells of measurements that stand for a missing value, in either case.
+const MISSING: [&str; 7] = ["", "NaN", "-NaN", "NA", "N/A", "null", "none"];
 
 /// CSV file as text: a header, and at least one row below it.
 ///
@@ -245,10 +245,7 @@ impl CsvTable {
         let must = format!("{must}, or empty where it is missing");
         self.parsed(column, &must, |cell| match cell {
             cell if is_missing(cell) => Some(f64::NAN),
-            cell => {
-                let number = cell.parse().ok();
-                number.filter(|number: &f64| number.is_nan() || is_allowed(*number))
-            }
+            cell => cell.parse().ok().filter(|number| is_allowed(*number)),
         })
     }
 

@@ -1,7 +1,7 @@
 //! Reader of CSV files of measured points.
 
 use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
-use crate::input::{CsvError, CsvTable};
+use crate::input::{CsvError, CsvTable, is_missing};
 use crate::scene::{NEAREST, Pole, Whisker, digits};
 use crate::sheet::Row;
 use crate::trace::{DetachmentKind, reach_mm};
@@ -39,8 +39,8 @@ impl MeasuredPoints {
         Self::of(&CsvTable::input(path)?)
     }
 
-    /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`. An empty cell and `NaN` are missing
-    /// numbers.
+    /// Reads points from the text of a CSV file, as [`CsvTable`] splits it. Messages call the text `origin`. Numbers and kinds may be missing, as
+    /// in [`CsvTable::measurements`].
     ///
     /// ```
     /// use whiskmap::measured::MeasuredPoints;
@@ -75,7 +75,7 @@ impl MeasuredPoints {
         })?;
         let kinds = "slip-off, pull-off or empty";
         let kinds = table.values("kind", kinds, |cell| match &*cell.to_lowercase() {
-            "" => Some(None),
+            cell if is_missing(cell) => Some(None),
             "slip-off" => Some(Some(DetachmentKind::SlipOff)),
             "pull-off" => Some(Some(DetachmentKind::PullOff)),
             _ => None,
