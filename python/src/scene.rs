@@ -1,11 +1,13 @@
 //! Checked scenes.
 
 use crate::arguments::{parameter, refused};
-use crate::errors::of_scene;
+use crate::errors::{of_io, of_scene};
 use crate::threads;
 use pyo3::exceptions::{PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs::File;
+use std::io::Read;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -66,8 +68,12 @@ impl CheckedScene {
     /// Reads a scene file.
     #[staticmethod]
     fn read(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        // Only a file that can be opened is a scene that is refused.
-        std::fs::File::open(&path).map_err(|cause| crate::errors::of_io(&path, &cause))?;
+        // Only a file that can be read is a scene that is refused. A folder can be opened.
+        let opened = File::open(&path).and_then(|mut file| match file.metadata()?.is_dir() {
+            true => file.read(&mut [0]).map(drop),
+            false => Ok(()),
+        });
+        opened.map_err(|cause| of_io(&path, &cause))?;
         let scene = py.detach(|| Scene::read(&path));
         scene.map(Self).map_err(|why| of_scene(py, &why))
     }
