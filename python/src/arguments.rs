@@ -1,10 +1,13 @@
 //! Arguments of functions: sides, parameters and engines by name, and options of maps.
 
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
+use std::ops::RangeInclusive;
 use whiskmap::Side;
+use whiskmap::accuracy::TOLERANCE_DEG;
 use whiskmap::input::{ColumnName, CsvError, CsvTable, did_you_mean};
-use whiskmap::scene::Parameter;
+use whiskmap::scene::{Parameter, digits};
 use whiskmap::{Channels, MapEngine, Options, Precision};
 
 /// Returns the side with this name, in capitals or not.
@@ -13,6 +16,29 @@ pub fn side(name: &str) -> PyResult<Side> {
         "cb" => Ok(Side::Cb),
         "cf" => Ok(Side::Cf),
         _ => Err(refused("side", name, "must be 'cb' or 'cf'")),
+    }
+}
+
+/// Returns the whole number `given`, the value of `argument`, if it is in the range.
+pub fn whole(
+    argument: &str,
+    given: &Bound<'_, PyAny>,
+    range: &RangeInclusive<u32>,
+) -> PyResult<usize> {
+    let (least, most) = (range.start(), range.end());
+    let must = || {
+        let value = given.repr()?;
+        Ok::<_, PyErr>(format!(
+            "{argument} = {value}: must be a whole number between {least} and {most}"
+        ))
+    };
+    let is_whole = !given.is_instance_of::<PyBool>() && given.hasattr("__index__")?;
+    if !is_whole {
+        return Err(PyTypeError::new_err(must()?));
+    }
+    match given.extract::<u32>() {
+        Ok(number) if range.contains(&number) => Ok(number as usize),
+        _ => Err(PyValueError::new_err(must()?)),
     }
 }
 
@@ -81,11 +107,13 @@ fn channels(names: &[String]) -> PyResult<Channels> {
     selected.map_err(|must: String| refused("channels", &names.join(", "), &must))
 }
 
-/// Returns the maximum push-angle error, if it is a positive number.
+/// Returns the maximum push-angle error, if it is allowed.
 pub fn tolerance(degrees: Option<f64>) -> PyResult<Option<f64>> {
     match degrees {
-        Some(degrees) if !(degrees > 0.0 && degrees.is_finite()) => {
-            let must = format!("tolerance_deg = {degrees}: must be a positive number");
+        Some(degrees) if !TOLERANCE_DEG.contains(&degrees) => {
+            let [least, most] =
+                [TOLERANCE_DEG.start(), TOLERANCE_DEG.end()].map(|end| digits(*end));
+            let must = format!("tolerance_deg = {degrees}: must be between {least} and {most}");
             Err(PyValueError::new_err(must))
         }
         _ => Ok(degrees),

@@ -29,8 +29,9 @@ impl ComputedMap {
         engine: &str,
         tolerance_deg: Option<f64>,
         channels: Option<Vec<String>>,
-        threads: Option<ThreadCount>,
+        threads: Option<Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let threads = ThreadCount::of(threads.as_ref())?;
         let scene = &scene.0;
         let options = arguments::options(engine, tolerance_deg, channels)?;
         let warning = spectral_warning(scene, options.engine);

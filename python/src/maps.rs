@@ -33,9 +33,10 @@ pub fn map<'py>(
     engine: &str,
     tolerance_deg: Option<f64>,
     channels: Option<Vec<String>>,
-    threads: Option<ThreadCount>,
+    threads: Option<Bound<'py, PyAny>>,
     progress: Option<Bound<'py, PyAny>>,
 ) -> PyResult<MapArrays<'py>> {
+    let threads = ThreadCount::of(threads.as_ref())?;
     let scene = &scene.0;
     let mut options = arguments::options(engine, tolerance_deg, channels)?;
     let channels = options.channels.unwrap_or_else(|| Channels::of_scene(scene));

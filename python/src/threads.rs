@@ -1,9 +1,11 @@
 //! Threads of computations, which run without the interpreter's lock and end on Ctrl-C.
 
-use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyValueError};
+use crate::arguments::whole;
+use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::collections::HashMap;
+use std::ops::RangeInclusive;
 use std::process;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
@@ -16,8 +18,8 @@ const TICK: Duration = Duration::from_millis(20);
 /// Stack of a thread in bytes, as in the program: GPU drivers compile on it.
 const STACK: usize = 8 << 20;
 
-/// Maximum number of threads.
-const MOST_THREADS: usize = 1024;
+/// Allowed numbers of threads.
+const THREADS: RangeInclusive<u32> = 1..=1024;
 
 /// Pools by their number of threads; 0 is a thread for each core, or `RAYON_NUM_THREADS`.
 ///
@@ -33,19 +35,10 @@ static POOLS: Mutex<Option<ThreadPools>> = Mutex::new(None);
 #[derive(Clone, Copy, Debug)]
 pub struct ThreadCount(usize);
 
-impl<'a, 'py> FromPyObject<'a, 'py> for ThreadCount {
-    type Error = PyErr;
-
-    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Self> {
-        match value.extract::<usize>() {
-            Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(Self(count)),
-            Err(why) if why.is_instance_of::<PyTypeError>(value.py()) => Err(why),
-            _ => {
-                let value = &*value;
-                let must = format!("threads = {value}: must be between 1 and {MOST_THREADS}");
-                Err(PyValueError::new_err(must))
-            }
-        }
+impl ThreadCount {
+    /// Returns the number of threads that is given; `None` without one.
+    pub fn of(given: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Self>> {
+        given.map(|given| Ok(Self(whole("threads", given, &THREADS)?))).transpose()
     }
 }
 

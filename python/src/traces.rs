@@ -12,12 +12,9 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap::Side;
 use whiskmap::scene::{Scene, SweepPlace};
-use whiskmap::trace::{Branch, BranchPoint, Detachment, ShapePoint};
+use whiskmap::trace::{BRANCH_POINTS, Branch, BranchPoint, Detachment, SHAPE_POINTS, ShapePoint};
 use whiskmap::yields::{PushMark, YieldMark};
 use whiskmap::{Options, branch as branch_of};
-
-/// Maximum number of points of a branch or a shape.
-const MOST_POINTS: usize = 1_000_000;
 
 /// Computes the detachments of all whiskers: whisker by whisker, CF before CB, by distance.
 #[pyfunction]
@@ -25,8 +22,9 @@ pub fn curve<'py>(
     py: Python<'py>,
     scene: &CheckedScene,
     tolerance_deg: Option<f64>,
-    threads: Option<ThreadCount>,
+    threads: Option<Bound<'py, PyAny>>,
 ) -> PyResult<Vec<Column<'py>>> {
+    let threads = ThreadCount::of(threads.as_ref())?;
     let mut options = Options::default();
     options.tolerance_deg = arguments::tolerance(tolerance_deg)?;
     let job = |cancel: &Arc<AtomicBool>| {
@@ -55,10 +53,10 @@ pub fn branch<'py>(
     scene: &CheckedScene,
     distance_mm: f64,
     side: &str,
-    points: usize,
+    points: &Bound<'py, PyAny>,
 ) -> PyResult<Vec<Column<'py>>> {
     let side = arguments::side(side)?;
-    check_points(points)?;
+    let points = arguments::whole("points", points, &BRANCH_POINTS)?;
     let scene = at_pole(py, scene, distance_mm)?;
     let job = |cancel: &Arc<AtomicBool>| {
         let points = branch_of(&scene, distance_mm, side)?.points_until(points, cancel)?;
@@ -82,9 +80,9 @@ pub fn shape<'py>(
     distance_mm: f64,
     push_angle_deg: f64,
     stable: bool,
-    points: usize,
+    points: &Bound<'py, PyAny>,
 ) -> PyResult<ShapeColumns<'py>> {
-    check_points(points)?;
+    let points = arguments::whole("points", points, &SHAPE_POINTS)?;
     if !(-360.0..=360.0).contains(&push_angle_deg) {
         let must = format!("push_angle_deg = {push_angle_deg}: must be between -360 and 360");
         return Err(PyValueError::new_err(must));
@@ -114,14 +112,6 @@ pub fn shape<'py>(
         shape.residual,
         state.into_columns(py)?,
     ))
-}
-
-fn check_points(points: usize) -> PyResult<()> {
-    if (3..=MOST_POINTS).contains(&points) {
-        return Ok(());
-    }
-    let must = format!("points = {points}: must be between 3 and {MOST_POINTS}");
-    Err(PyValueError::new_err(must))
 }
 
 /// Returns the scene with the pole of this distance alone, if it has one whisker.

@@ -7,6 +7,7 @@ mod sample;
 use crate::refine::GOAL;
 use crate::scene::Scene;
 use sample::SceneSample;
+use std::ops::RangeInclusive;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -24,6 +25,9 @@ pub struct Accuracy {
 /// change with the square root of the push angle.
 pub const BOUNDED: &str = "push angles: where states stand and where they detach; not contact angles, arclengths, \
                            forces and moments, which next to a fold change faster";
+
+/// Tolerances of push angles that can be requested, in degrees: smaller ones are below the rounding error, larger ones give meaningless maps.
+pub const TOLERANCE_DEG: RangeInclusive<f64> = 1e-10..=1.0;
 
 /// Largest error of the scene over the largest of the sample. The largest factor measured in all shipped scenes, over tolerances from 1e-2
 /// to 1e-8 degrees, is 1.5 (`tests/accuracy.rs`).

@@ -8,9 +8,12 @@ use crate::friction::Sliding;
 use crate::scene::{Pole, Whisker};
 use crate::sheet::{CurveNode, Edge, LevelCurve, Path, Sheet, Stretch};
 use serde::Serialize;
-use std::ops::Deref;
+use std::ops::{Deref, RangeInclusive};
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::Side;
+
+/// Numbers of points of a branch that can be requested.
+pub const BRANCH_POINTS: RangeInclusive<u32> = 3..=1_000_000;
 
 /// Number of points that are computed between two looks at the flag that cancels.
 const POINTS_AT_ONCE: usize = 1 << 10;

@@ -13,14 +13,14 @@ mod shape;
 mod stable;
 mod state;
 
-pub use branch::{Branch, BranchPoint};
+pub use branch::{BRANCH_POINTS, Branch, BranchPoint};
 pub use corner::{Corner, NoCorner, corner};
 pub use curve::{
     Detachment, DetachmentKind, EndDetail, PushedWhisker, curve, curve_at, ends_at, reach_mm,
 };
 pub(crate) use curve::{RowEnd, crossings, detachments, snaps_deg};
 pub use peak::{PushLoad, PushPeak};
-pub use shape::{ShapePoint, WhiskerPart, WhiskerShape};
+pub use shape::{SHAPE_POINTS, ShapePoint, WhiskerPart, WhiskerShape};
 pub use stable::StableBranch;
 pub use state::StateAtPush;
 

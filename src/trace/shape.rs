@@ -4,9 +4,13 @@ use super::columns::row;
 use super::{BranchPoint, FINER, StableBranch, StateAtPush};
 use glam::DVec2;
 use serde::Serialize;
+use std::ops::RangeInclusive;
 use whiskmap_mechanics::rod::{Rest, arclength};
 use whiskmap_mechanics::shooting::bending_strain;
 use whiskmap_mechanics::shooting::shape::{RodPoint, profile};
+
+/// Numbers of points of a shape that can be requested, besides the contact.
+pub const SHAPE_POINTS: RangeInclusive<u32> = 2..=1_000_000;
 
 /// Shape of a whisker at its pole, in mm in the frame of the pole: the origin is at the base, the first axis along the base's tangent at
 /// first touch. A push rotates the base and leaves the pole.

@@ -15,7 +15,7 @@ use whiskmap::render::{
 };
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{Variable, branch};
-use whiskmap::trace::BranchPoint;
+use whiskmap::trace::{BRANCH_POINTS, BranchPoint};
 use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
@@ -45,7 +45,7 @@ pub struct BranchArgs {
     #[arg(long, value_enum, default_value = "both")]
     side: SideChoice,
     /// Number of points per side and distance
-    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(3..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(BRANCH_POINTS))]
     points: u32,
     /// Column on the vertical axis of the plot
     #[arg(

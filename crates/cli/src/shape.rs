@@ -11,7 +11,7 @@ use std::path::PathBuf;
 use whiskmap::Side;
 use whiskmap::render::{Chart, Dot, DrawnShape, Ink, Line, Stroke, shapes};
 use whiskmap::scene::digits;
-use whiskmap::trace::{Branch, BranchPoint, NoState, ShapePoint};
+use whiskmap::trace::{Branch, BranchPoint, NoState, SHAPE_POINTS, ShapePoint};
 use whiskmap::yields::YieldMark;
 
 const EXAMPLES: &str = "\
@@ -43,7 +43,7 @@ pub struct ShapeArgs {
     #[arg(long, value_enum, default_value = "stable")]
     branch: BranchPart,
     /// Number of points along the whisker, besides the contact
-    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "200", value_parser = whole(SHAPE_POINTS))]
     points: u32,
     /// Write the state to FILE, as one row with the columns of `branch`: loads, energy, largest strain; - is standard output
     #[arg(long, value_name = "FILE")]

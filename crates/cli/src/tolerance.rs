@@ -4,9 +4,9 @@ use super::arguments;
 use super::failure::{Failure, message};
 use clap::Args;
 use whiskmap::Side;
-use whiskmap::accuracy::{Accuracy, BOUNDED};
+use whiskmap::accuracy::{Accuracy, BOUNDED, TOLERANCE_DEG};
 use whiskmap::compute::{self, Error};
-use whiskmap::scene::Scene;
+use whiskmap::scene::{Scene, digits};
 
 #[derive(Debug, Default, Args)]
 pub struct ToleranceArgs {
@@ -20,16 +20,17 @@ pub struct ToleranceArgs {
     tolerance: Option<f64>,
 }
 
-/// Allowed tolerances, in degrees: smaller ones are below the rounding error, larger ones give meaningless maps.
-const RANGE: std::ops::RangeInclusive<f64> = 1e-10..=1.0;
-
 /// Factor after which a number, rounded to two digits, is not below its former value.
 const ROUNDED_UP: f64 = 1.06;
 
 fn degrees(text: &str) -> Result<f64, String> {
     match arguments::angle(text)? {
-        degrees if RANGE.contains(&degrees) => Ok(degrees),
-        _ => Err("must be between 1e-10deg and 1deg".to_owned()),
+        degrees if TOLERANCE_DEG.contains(&degrees) => Ok(degrees),
+        _ => {
+            let [least, most] =
+                [TOLERANCE_DEG.start(), TOLERANCE_DEG.end()].map(|end| digits(*end));
+            Err(format!("must be between {least}deg and {most}deg"))
+        }
     }
 }
 

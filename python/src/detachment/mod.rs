@@ -62,8 +62,9 @@ pub fn detachment<'py>(
     distance_mm: PyReadonlyArray1<'py, f64>,
     is_cb: PyReadonlyArray1<'py, bool>,
     variables: Vec<String>,
-    threads: Option<ThreadCount>,
+    threads: Option<Bound<'py, PyAny>>,
 ) -> PyResult<DetachmentArrays<'py>> {
+    let threads = ThreadCount::of(threads.as_ref())?;
     let mut base = match &scene {
         Some(scene) => {
             single(&scene.0)?;
