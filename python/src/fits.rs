@@ -202,8 +202,7 @@ pub fn design(
 ) -> PyResult<DesignResult> {
     single(&scene.0)?;
     let (varied, distance_mm) = varied(&scene.0, vec![parameter], distance, keeps_taper)?;
-    let goal = goals(goal)?;
-    let target = DesignTarget { distance_mm, side: target_side(goal, value, side)?, goal, value };
+    let target = target((goal, value), distance_mm, side)?;
     let push = (target.side, distance_mm);
     let job = |cancel: &Arc<AtomicBool>| {
         let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
@@ -246,16 +245,8 @@ pub fn designs(
 ) -> PyResult<DesignsResult> {
     single(&scene.0)?;
     let (varied, distance_mm) = varied(&scene.0, parameters, distance, keeps_taper)?;
-    let target = |(name, value): &(String, f64)| {
-        let goal = goals(name)?;
-        Ok(DesignTarget {
-            distance_mm,
-            side: target_side(goal, *value, side)?,
-            goal,
-            value: *value,
-        })
-    };
-    let targets: Vec<DesignTarget> = targets.iter().map(target).collect::<PyResult<_>>()?;
+    let targets = targets.iter().map(|(goal, value)| target((goal, *value), distance_mm, side));
+    let targets: Vec<DesignTarget> = targets.collect::<PyResult<_>>()?;
     let job = |cancel: &Arc<AtomicBool>| {
         let found = designs_until(&scene.0, &varied, &targets, cancel)?;
         let push = (targets[0].side, distance_mm);
@@ -280,8 +271,15 @@ fn goals(name: &str) -> PyResult<DesignGoal> {
     })
 }
 
-/// Returns the side of a target: the side of the push angle, or the given side for a load.
-fn target_side(goal: DesignGoal, value: f64, side: Option<&str>) -> PyResult<Side> {
+/// Returns the target of a push at a distance in mm: the name of its goal, and its value. Its side is that of the push angle, or the given one for
+/// a load.
+fn target(
+    (name, value): (&str, f64),
+    distance_mm: f64,
+    side: Option<&str>,
+) -> PyResult<DesignTarget> {
+    let goal = goals(name)?;
+    let target = |side| Ok(DesignTarget { distance_mm, side, goal, value });
     let side = side.map(arguments::side).transpose()?;
     let is_angle = goal.kind().is_some();
     let must = match (is_angle, side) {
@@ -291,10 +289,10 @@ fn target_side(goal: DesignGoal, value: f64, side: Option<&str>) -> PyResult<Sid
         (true, Some(side)) if side != Side::of_push(value) => {
             "must be positive with side='cb', and negative with side='cf'"
         }
-        (true, _) => return Ok(Side::of_push(value)),
+        (true, _) => return target(Side::of_push(value)),
         (false, _) if !(value > 0.0 && value.is_finite()) => "must be more than 0",
         (false, None) => "needs a side, 'cb' or 'cf'",
-        (false, Some(side)) => return Ok(side),
+        (false, Some(side)) => return target(side),
     };
-    Err(PyValueError::new_err(format!("target = {value}: {must}")))
+    Err(PyValueError::new_err(format!("{name} = {value}: {must}")))
 }
