@@ -343,7 +343,7 @@ impl CommonTaper {
         let [taper, deviation] =
             [self.taper, self.deviation].map(|number| digits(rounded(number, 3)));
         let advice =
-            if self.deviation > ROUGH_TAPER { ": give it by --taper, if it is known" } else { "" };
+            if self.deviation > ROUGH_TAPER { ": give it by `taper`, if it is known" } else { "" };
         format!(
             "the taper is {taper}, with a standard deviation of {deviation}, from {count} frames in contact{advice}"
         )

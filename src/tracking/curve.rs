@@ -164,7 +164,7 @@ fn traced_frames(
     let points_each = median(known().map(|points| points.len() as f64));
     let are_few = points_each < ENOUGH_POINTS;
     if are_few {
-        let or = if options.pole.is_none() { ", or 5 with --pole" } else { "" };
+        let or = if options.pole.is_none() { ", or 5 with `pole`" } else { "" };
         remarks.warnings.push(format!(
             "{points_each} points along the whisker are few: angles and curvatures of a bent whisker may be far off; {ENOUGH_POINTS} or more are enough{or}"
         ));

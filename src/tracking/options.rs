@@ -101,6 +101,26 @@ pub struct TrackingOptions {
 }
 
 impl TrackingOptions {
+    /// Names of the options, which are in backticks in notes and warnings: `[option]`.
+    pub const NAMES: [&'static str; 16] = [
+        "format",
+        "mm_per_pixel",
+        "fps",
+        "whisker",
+        "points",
+        "likelihood",
+        "follicle_px",
+        "curvature_at_mm",
+        "fit_to_mm",
+        "degree",
+        "mirror",
+        "face_axis",
+        "pole",
+        "contact_within_mm",
+        "taper",
+        "zero_s",
+    ];
+
     /// Creates options with a scale in mm per pixel and a number of frames per second. All else is found.
     #[must_use]
     pub const fn new(mm_per_pixel: f64, fps: f64) -> Self {
@@ -186,6 +206,9 @@ pub enum TrackingError {
     /// The file cannot be read, or has a wrong cell.
     #[error(transparent)]
     File(#[from] CsvError),
+    /// The flag that cancels is true.
+    #[error("cancelled")]
+    Cancelled,
     /// An option does not fit the file, or is out of its range.
     #[error("{option} = {value}: {must}")]
     Option {

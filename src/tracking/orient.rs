@@ -32,7 +32,7 @@ pub(super) fn order(
             let beside = chain(&mut image.frames, names);
             image.remarks.warnings.extend(beside.into_iter().map(|name| {
                 format!(
-                    "body part {name} is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole"
+                    "body part {name} is beside the whisker in most frames: give the parts along the whisker by `points`, and the pole by `pole`"
                 )
             }));
         }

@@ -50,7 +50,7 @@ const OUTLYING: f64 = 6.0;
 const MANY: usize = 4;
 
 /// What to check where the whisker near the pole is not that of the film.
-const ADVICE: &str = "check --contact-within, the pole's position, --taper and --mm-per-pixel; friction and other objects bend a whisker, too";
+const ADVICE: &str = "check `contact_within_mm`, the pole's position, `taper` and `mm_per_pixel`; friction and other objects bend a whisker, too";
 
 /// Ratio of the distances of points near the pole and without contact from which on there is a warning.
 const OFF: f64 = 2.0;
@@ -109,7 +109,7 @@ impl NoRods {
         let contact = if shows_contact { "" } else { " that do not show contact, which is empty" };
         let advice = match self {
             Self::Unlike(_) => {
-                "; check the pole's position, whose y axis points downward, and that the trace goes past it; only --mirror mirrors the image"
+                "; check the pole's position, whose y axis points downward, and that the trace goes past it; only `mirror` mirrors the image"
             }
             _ => "",
         };
@@ -202,7 +202,7 @@ impl Film<'_> {
             Some(found) => (found.taper, found.note(bent.len())),
             None => {
                 let note = format!(
-                    "{} frames near the pole do not show the taper: {TYPICAL_TAPER} is taken; give it by --taper",
+                    "{} frames near the pole do not show the taper: {TYPICAL_TAPER} is taken; give it by `taper`",
                     bent.len()
                 );
                 (TYPICAL_TAPER, note)

@@ -156,7 +156,7 @@ fn aside(rows: &[TrackedFrame], places: &[Option<NearestPlace>], reach_mm: f64) 
     let (frame, least_mm) = all.min_by(|one, other| one.1.total_cmp(&other.1))?;
     (least_mm > reach_mm).then(|| {
         format!(
-            "no frame comes near the pole: the whisker is {} mm or more from its centre (frame {frame}); check its position, whose y axis points downward, and --mm-per-pixel",
+            "no frame comes near the pole: the whisker is {} mm or more from its centre (frame {frame}); check its position, whose y axis points downward, and `mm_per_pixel`",
             digits(rounded(least_mm, 2))
         )
     })

@@ -123,7 +123,7 @@ fn the_shipped_film_has_a_slip_off() {
 
     let without_pole = parse(text, &with(&|_| ())).unwrap();
     let notes = without_pole.warnings.iter().filter(|note| is_beside(note));
-    let named = "body part pole is beside the whisker in most frames: give the parts along the whisker by --points, and the pole by --pole";
+    let named = "body part pole is beside the whisker in most frames: give the parts along the whisker by `points`, and the pole by `pole`";
     assert_eq!(notes.collect::<Vec<_>>(), [named]);
     let are_few = |note: &String| note.contains("points along the whisker are few");
     assert!(!found.warnings.iter().any(are_few), "{:?}", found.warnings);

@@ -277,7 +277,7 @@ fn points_off_the_rod_are_named() {
         let found = parse(&text, &at_pole(pole, &|options| options.taper = taper)).unwrap();
         let mut warnings = found.warnings.iter();
         warnings.any(|warning| {
-            warning.contains("the whisker near the pole is off the rod: check --contact-within")
+            warning.contains("the whisker near the pole is off the rod: check `contact_within_mm`")
         })
     };
     assert_eq!([None, Some(0.95), Some(0.65)].map(is_off), [false, false, true]);
@@ -301,7 +301,7 @@ fn polynomials_remain_where_they_are_selected_or_no_frame_is_free() {
     // Without contact, no frame shows the taper.
     let free: Vec<&str> = text.lines().filter(|line| !is_held(line)).collect();
     let notes = parse(&free.join("\n"), &at_pole(pole, &|_| ())).unwrap().notes.join("\n");
-    let why = "frames near the pole do not show the taper: 0.95 is taken; give it by --taper";
+    let why = "frames near the pole do not show the taper: 0.95 is taken; give it by `taper`";
     assert!(notes.contains(why), "{notes}");
 }
 

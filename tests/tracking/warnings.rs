@@ -71,7 +71,7 @@ fn a_distance_in_contact_below_the_radius_of_the_pole_is_named() {
     let small = at_pole(pole, &|options| options.contact_within_mm = Some(0.2));
     let found = parse(&text, &small).unwrap();
     let bent = "frames, the whisker is bent at the pole, but is 0.25 mm from its centre (median), more \
-                than 0.2 mm: check --contact-within, the pole's position, --taper and --mm-per-pixel";
+                than 0.2 mm: check `contact_within_mm`, the pole's position, `taper` and `mm_per_pixel`";
     assert!(warns(&found, bent), "{:?}", found.warnings);
     assert_eq!(wrongly_free(&found, &truth), [0; 0]);
 }
@@ -88,7 +88,7 @@ fn few_points_without_a_shape_at_rest_leave_contacts_unknown() {
         assert_eq!(warns(&found, hidden), !is_known, "{:?}", found.warnings);
         let known = found.frames.iter().filter(|row| row.contact.is_some());
         assert_eq!(known.count() > 0, is_known);
-        assert!(!warns(&found, "--pole"), "{:?}", found.warnings);
+        assert!(!warns(&found, "`pole`"), "{:?}", found.warnings);
     }
 }
 
@@ -109,7 +109,7 @@ fn body_parts_that_are_lost_in_all_frames_are_named() {
     let found = parse(&lost("g"), &pole).unwrap();
     assert!(warns(&found, "body part g: lost in all frames"), "{:?}", found.warnings);
     assert!(warns(&found, "contacts are not known"), "{:?}", found.warnings);
-    assert!(!warns(&found, "5 with --pole"), "{:?}", found.warnings);
+    assert!(!warns(&found, "5 with `pole`"), "{:?}", found.warnings);
     assert_eq!(parse(&lost("none"), &options()).unwrap().warnings.len(), 1, "few points");
 }
 

@@ -155,6 +155,15 @@ fn flag(option: &str) -> String {
     format!("--{}", stem.unwrap_or(option).replace('_', "-"))
 }
 
+/// Returns notes or warnings with the command-line options in place of the names of [`TrackingOptions`], which are in backticks.
+fn with_flags(texts: &[String]) -> Vec<String> {
+    let replaced = |text: String, option| text.replace(&format!("`{option}`"), &flag(option));
+    texts
+        .iter()
+        .map(|text| TrackingOptions::NAMES.into_iter().fold(text.clone(), replaced))
+        .collect()
+}
+
 impl From<TrackingError> for Failure {
     fn from(why: TrackingError) -> Self {
         match why {
@@ -192,8 +201,8 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
     let output = files.output("--output", &args.output)?;
     let tracking = Tracking::read(&args.files, &args.options(), &AtomicBool::new(false))?;
     let shape = args.shape.map(|frame| tracking.shape(frame)).transpose()?;
-    notes(&tracking.notes);
-    warnings(&tracking.warnings);
+    notes(&with_flags(&tracking.notes));
+    warnings(&with_flags(&tracking.warnings));
     match shape {
         Some(points) => write(output, TrackedPoint::COLUMNS, points),
         None if args.detachments => {
