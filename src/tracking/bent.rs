@@ -353,7 +353,7 @@ pub(super) enum FittedLoad {
 /// Fits a curve to a frame with this load. The angle of the base, in radians, is a guess.
 ///
 /// # Errors
-/// The reason why the iteration ends before it converges.
+/// The reason why the iteration ends before it converges, as when `cancel` is true.
 pub(super) fn fit(
     whisker: &TrackedRod,
     frame: &FramePoints,
@@ -361,6 +361,9 @@ pub(super) fn fit(
     load: FittedLoad,
     cancel: &AtomicBool,
 ) -> Result<FrameFit, &'static str> {
+    if cancel.load(Ordering::Relaxed) {
+        return Err("it is cancelled");
+    }
     let contact = match load {
         FittedLoad::Rest => None,
         FittedLoad::Pole(s) | FittedLoad::Place(s) => Some(s.clamp(CONTACTS[0], CONTACTS[1])),

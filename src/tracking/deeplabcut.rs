@@ -4,15 +4,17 @@ use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
 use super::{FRAME_NUMBERS, ImageFrame, ImageFrames, PointOrder, Remarks, frame_number};
 use crate::input::{CsvError, CsvLine, CsvLines, CsvTable, each_once, shortened};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Names of the rows of the header.
 const HEADER: [&str; 3] = ["scorer", "bodyparts", "coords"];
 
-/// Reads the frames of a file. Points below the likelihood are lost.
+/// Reads the frames of a file, until `cancel` becomes true. Points below the likelihood are lost.
 pub(super) fn read(
     mut lines: CsvLines,
     origin: &str,
     options: &TrackingOptions,
+    cancel: &AtomicBool,
 ) -> Result<ImageFrames, TrackingError> {
     if let Some(whisker) = options.whisker {
         let must =
@@ -55,10 +57,13 @@ pub(super) fn read(
     if let Some(name) = along.iter().find(|name| !parts.contains(name)) {
         return Err(unknown("points", name, &parts));
     }
-    let positions = |part: &str| positions(&table, part, header[2].number, options.likelihood);
+    let positions = |part: &str| match cancel.load(Ordering::Relaxed) {
+        true => Err(TrackingError::Cancelled),
+        false => Ok(positions(&table, part, header[2].number, options.likelihood)?),
+    };
     let along = along.into_iter().map(|part| Ok((part, positions(part)?)));
-    let along = along.collect::<Result<Vec<PartPositions>, CsvError>>()?;
-    let pole = pole.map(|part| Ok::<PartPositions, CsvError>((part, positions(part)?)));
+    let along = along.collect::<Result<Vec<PartPositions>, TrackingError>>()?;
+    let pole = pole.map(|part| Ok::<PartPositions, TrackingError>((part, positions(part)?)));
     let pole = pole.transpose()?;
     let fixed = match options.pole {
         Some(ImagePole::At(at)) => Some(at),

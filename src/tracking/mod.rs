@@ -29,7 +29,7 @@ use frame_curve::FrameCurve;
 use options::refused;
 use serde::Serialize;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Longest file of a tracker in MiB: 400,000 frames of 10 body parts.
 const TRACKING_MIB: u64 = 256;
@@ -167,17 +167,22 @@ impl Tracking {
     }
 
     /// Reads texts of a tracker's files, each with its name in messages: `[file][text, name]`. If `cancel` becomes true, the function soon
-    /// returns, and the remaining frames are gaps.
+    /// returns [`TrackingError::Cancelled`].
     ///
     /// # Errors
     /// If a text has no known format, a cell is no number, an option does not fit the format or is out of its range, or the data do not show
-    /// which end is the base.
+    /// which end is the base. Also after a cancellation.
     pub fn parse(
         texts: &[(String, String)],
         options: &TrackingOptions,
         cancel: &AtomicBool,
     ) -> Result<Self, TrackingError> {
         options.check()?;
+        let go_on = || match cancel.load(Ordering::Relaxed) {
+            true => Err(TrackingError::Cancelled),
+            false => Ok(()),
+        };
+        go_on()?;
         let Some((first, rest)) = texts.split_first() else {
             return Err(CsvError::whole("tracking", "has no file: must have at least one").into());
         };
@@ -195,7 +200,8 @@ impl Tracking {
         let (text, origin) = first;
         let mut image = match format {
             TrackingFormat::DeepLabCut => {
-                deeplabcut::read(CsvLines::split(text, origin)?, origin, options)?
+                let lines = CsvLines::split(text, origin)?;
+                deeplabcut::read(lines, origin, options, cancel)?
             }
             TrackingFormat::Whisk => measurements::read(text, origin, options)?,
             TrackingFormat::Xy => points::read(texts, options)?,
@@ -206,16 +212,20 @@ impl Tracking {
             let what = format!("must have frames whose numbers differ by less than {MOST_FRAMES}");
             return Err(CsvError::whole(origin, what).into());
         };
+        go_on()?;
         orient::order(&mut image, options)?;
+        go_on()?;
         let curves = curve::Curves::new(&image.frames, options, cancel, &mut image.remarks)?;
         let needs = curves.needs.clone();
         let curves = curves.of_frames(from..=last);
+        go_on()?;
         if curves.iter().all(|frame| frame.curve.is_err()) {
             let what = format!("has no frame with a curve: must have at least one with {needs}");
             return Err(CsvError::whole(origin, what).into());
         }
         let mut remarks = image.remarks;
-        let (frames, contacts) = rows::frames(&curves, options, &mut remarks)?;
+        let (frames, contacts) = rows::frames(&curves, options, cancel, &mut remarks)?;
+        go_on()?;
         let shapes = curves.iter().map(|frame| (frame.number, frame.points_mm.clone()));
         Ok(Self {
             format,
@@ -225,6 +235,12 @@ impl Tracking {
             warnings: remarks.warnings,
             shapes: shapes.collect(),
         })
+    }
+
+    /// Returns the points of each frame from base to tip, in mm with the y axis upward, `[frame][point][x, y]`; a gap has none. Measurements of
+    /// whisk have base and tip alone.
+    pub fn points_mm(&self) -> impl Iterator<Item = &[[f64; 2]]> {
+        self.shapes.iter().map(|(_, points)| &**points)
     }
 
     /// Returns the traced points of the frame with this number, from base to tip, for `whisker.rest.points` of a scene.

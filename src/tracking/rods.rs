@@ -15,7 +15,7 @@ use crate::scene::{digits, rounded};
 use crate::traced::{LARGEST_RMS, MOST_DEGREE};
 use rayon::prelude::*;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Largest number of frames, from all over the film, that give the shape at rest or the taper.
 const SAMPLE: usize = 40;
@@ -358,6 +358,9 @@ pub(super) fn curves(
     let usual = film.usual_contact(&whisker, &frames);
     let curve = |(frame, found): (&Option<RodFrame>, &Result<FrameFit, NoFrame>)| {
         let found = found.as_ref().map_err(|why| *why)?;
+        if cancel.load(Ordering::Relaxed) {
+            return Err(NoFrame::Missing);
+        }
         let loaded = frame.as_ref().filter(|_| found.offset.is_none());
         let loaded = loaded.and_then(|frame| frame.fit(&whisker, FittedLoad::Place(usual), cancel));
         Ok(FrameCurve::rod(&whisker, found, loaded.as_ref()))

@@ -9,6 +9,7 @@ use crate::scene::{digits, rounded};
 use crate::trace::row;
 use rayon::prelude::*;
 use serde::Serialize;
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::numerics::nearest_turn;
 
 /// Part of the median length at which the curvature is given if no arclength is.
@@ -59,10 +60,12 @@ row! {
     }
 }
 
-/// Computes the rows of all frames, and the nearest place to the pole in each; adds notes and warnings.
+/// Computes the rows of all frames, and the nearest place to the pole in each; adds notes and warnings. If `cancel` becomes true, the remaining
+/// rows have no numbers.
 pub(super) fn frames(
     curves: &[CurvedFrame],
     options: &TrackingOptions,
+    cancel: &AtomicBool,
     remarks: &mut Remarks,
 ) -> Result<(Vec<TrackedFrame>, Vec<Option<NearestPlace>>), TrackingError> {
     let Remarks { notes, warnings } = remarks;
@@ -94,9 +97,10 @@ pub(super) fn frames(
             Some(mm)
         }
     };
+    let goes_on = || !cancel.load(Ordering::Relaxed);
     let places = curves.par_iter().map(|frame| {
-        let pole = frame.pole_mm?;
-        Some(frame.curve.as_ref().ok()?.nearest(pole))
+        let curve = frame.curve.as_ref().ok().filter(|_| goes_on())?;
+        Some(curve.nearest(frame.pole_mm?))
     });
     let places: Vec<Option<NearestPlace>> = places.collect();
     let within = options.contact_within_mm.unwrap_or_default();
@@ -112,7 +116,7 @@ pub(super) fn frames(
         angles.push(turned);
     }
     let row = |((frame, place), angle): ((&CurvedFrame, &Option<NearestPlace>), &Option<f64>)| {
-        let curve = frame.curve.as_ref().ok();
+        let curve = frame.curve.as_ref().ok().filter(|_| goes_on());
         let at = curve.map(|curve| at_mm.unwrap_or(0.5 * curve.length_mm));
         let at = at.filter(|at| curve.is_some_and(|curve| *at <= curve.near_mm()));
         let position = curve.zip(at).map(|(curve, at)| curve.position_mm(at));

@@ -1,8 +1,9 @@
 //! Bad files, and options that do not fit them.
 
 use super::{deeplabcut, exact, measurements, options, points, refusal, with};
-use std::sync::atomic::AtomicBool;
-use whiskmap::tracking::{FaceAxis, ImagePole, Tracking};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+use whiskmap::tracking::{FaceAxis, ImagePole, Tracking, TrackingError};
 
 #[test]
 fn bad_files_are_named_with_line_value_and_what_is_allowed() {
@@ -234,5 +235,30 @@ fn options_that_do_not_fit_are_refused() {
     ] {
         let message = refusal(text, &options);
         assert!(message.starts_with(why), "{message}\n{why}");
+    }
+}
+
+/// A flag that is set before or during the work ends it: the result is not that of the film.
+#[test]
+fn a_cancelled_film_has_no_result() {
+    let film = deeplabcut(exact);
+    let (header, rows) = film.split_at(film.find("\n0,").unwrap());
+    let rows = rows.lines().skip(1).map(|row| row.split_once(',').unwrap().1);
+    let rows = rows.cycle().take(40_000).enumerate();
+    let long = rows.fold(header.to_owned(), |text, (i, row)| text + &format!("\n{i},{row}"));
+    for (text, after_ms) in [(film.clone(), None), (long, Some(5))] {
+        let cancel = AtomicBool::new(after_ms.is_none());
+        let files = [(text, "film.csv".to_owned())];
+        let found = std::thread::scope(|scope| {
+            if let Some(after_ms) = after_ms {
+                let cancel = &cancel;
+                scope.spawn(move || {
+                    std::thread::sleep(Duration::from_millis(after_ms));
+                    cancel.store(true, Ordering::Relaxed);
+                });
+            }
+            Tracking::parse(&files, &options(), &cancel)
+        });
+        assert_eq!(found, Err(TrackingError::Cancelled));
     }
 }
