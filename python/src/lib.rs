@@ -53,5 +53,5 @@ mod _whiskmap {
     #[pymodule_export]
     use super::traces::{branch, curve, shape};
     #[pymodule_export]
-    use super::tracking::TrackedFilm;
+    use super::tracking::read_tracking;
 }

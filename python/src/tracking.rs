@@ -4,6 +4,7 @@ use crate::arguments;
 use crate::columns::{Column, Table};
 use crate::motion::refused;
 use crate::threads;
+use numpy::PyArray1;
 use pyo3::prelude::*;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -72,51 +73,44 @@ impl Options {
 }
 
 /// Whisker of a film, frame by frame.
-#[pyclass(frozen, module = "whiskmap._whiskmap")]
-pub struct TrackedFilm(Tracking);
+#[derive(IntoPyObject)]
+pub struct TrackedFilm<'py> {
+    format: &'static str,
+    frames: Vec<Column<'py>>,
+    detachments: Vec<Column<'py>>,
+    /// Points of all frames in mm, one frame after the other, `[point, x or y]` in one dimension.
+    points: Bound<'py, PyArray1<f64>>,
+    /// Number of points of each frame, `[frame]`; 0 in a gap.
+    counts: Bound<'py, PyArray1<i64>>,
+    notes: Vec<String>,
+    warnings: Vec<String>,
+}
 
-#[pymethods]
-impl TrackedFilm {
-    /// Reads the texts of a tracker's files, each with its name in messages.
-    #[staticmethod]
-    fn parse(py: Python<'_>, texts: Vec<(String, String)>, options: Options) -> PyResult<Self> {
-        let options = options.checked()?;
-        let job = |cancel: &Arc<AtomicBool>| Tracking::parse(&texts, &options, cancel);
-        let found =
-            threads::run(py, None, |_| Ok(()), job)?.map_err(|why: TrackingError| refused(&why))?;
-        Ok(Self(found))
-    }
-
-    /// Returns the name of the format.
-    fn format(&self) -> &'static str {
-        self.0.format.name()
-    }
-
-    /// Returns the columns of the frames.
-    fn frames<'py>(&self, py: Python<'py>) -> PyResult<Vec<Column<'py>>> {
-        let none = AtomicBool::new(false);
-        Table::new(&self.0.frames, TrackedFrame::COLUMNS, &none).into_columns(py)
-    }
-
-    /// Returns the columns of the detachments.
-    fn detachments<'py>(&self, py: Python<'py>) -> PyResult<Vec<Column<'py>>> {
-        let none = AtomicBool::new(false);
-        Table::new(&self.0.detachments, TrackedDetachment::COLUMNS, &none).into_columns(py)
-    }
-
-    /// Returns notes on what was found.
-    fn notes(&self) -> Vec<String> {
-        self.0.notes.clone()
-    }
-
-    /// Returns warnings about what may be wrong or is not known.
-    fn warnings(&self) -> Vec<String> {
-        self.0.warnings.clone()
-    }
-
-    /// Returns the points of a frame from base to tip, `[point][x, y]` in mm.
-    fn shape(&self, frame: u64) -> PyResult<Vec<[f64; 2]>> {
-        let points = self.0.shape(frame).map_err(|why| refused(&why))?;
-        Ok(points.iter().map(|point| [point.x_mm, point.y_mm]).collect())
-    }
+/// Reads the texts of a tracker's files, each with its name in messages.
+#[pyfunction]
+pub fn read_tracking(
+    py: Python<'_>,
+    texts: Vec<(String, String)>,
+    options: Options,
+) -> PyResult<TrackedFilm<'_>> {
+    let options = options.checked()?;
+    let job = |cancel: &Arc<AtomicBool>| {
+        let film = Tracking::parse(&texts, &options, cancel)?;
+        let frames = Table::new(&film.frames, TrackedFrame::COLUMNS, cancel);
+        let detachments = Table::new(&film.detachments, TrackedDetachment::COLUMNS, cancel);
+        Ok((film, frames, detachments))
+    };
+    let found = threads::run(py, None, |_| Ok(()), job)?;
+    let (film, frames, detachments) = found.map_err(|why: TrackingError| refused(&why))?;
+    let counts = film.points_mm().map(|points| points.len() as i64);
+    let points = film.points_mm().flatten().flatten().copied();
+    Ok(TrackedFilm {
+        format: film.format.name(),
+        frames: frames.into_columns(py)?,
+        detachments: detachments.into_columns(py)?,
+        points: PyArray1::from_iter(py, points),
+        counts: PyArray1::from_iter(py, counts),
+        notes: film.notes,
+        warnings: film.warnings,
+    })
 }

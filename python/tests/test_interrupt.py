@@ -30,6 +30,13 @@ CALLS = {
         "rough = wm.Scene.read(sys.argv[1] + '/scenes/texture_cone.toml'); t = np.arange(1_000_000) / 1000; a = 15 * np.sin(t)",
         "wm.texture(rough, t, a)",
     ),
+    "read_tracking": (
+        "import tempfile; head, rows = open(sys.argv[1] + '/scenes/deeplabcut.csv').read().split('\\n0,');"
+        " rows = [row.partition(',')[2] for row in ('0,' + rows).splitlines()] * 1800;"
+        " film = tempfile.NamedTemporaryFile('w', suffix='.csv');"
+        " film.write('\\n'.join([head, *(f'{i},{row}' for i, row in enumerate(rows))])); film.flush()",
+        "wm.read_tracking(film.name, mm_per_pixel=0.05, fps=500, pole='pole', contact_within_mm=0.35)",
+    ),
     "force of the model": (
         "f = pd.read_csv(sys.argv[1] + '/scenes/frames.csv', comment='#'); f = pd.concat([f] * 400, ignore_index=True);"
         " f['time_s'] = np.arange(len(f))",

@@ -1,7 +1,13 @@
 """Files of whisker trackers."""
 
+import pickle
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
+import xarray as xr
 from conftest import ROOT
 
 import whiskmap as wm
@@ -52,7 +58,21 @@ def test_detachments_are_those_of_fit(cone):
     points = {name: np.repeat(found[name].values, 2) for name in ("side", "distance_mm", "push_angle_deg")}
     fitted = wm.fit(cone, points, ["tip_radius_um"])
     assert abs(fitted.points.residual_deg.values).max() < 0.1
-    assert wm.read_tracking(FILM, **SCALE, points=["base", "w2", "w3", "w5", "w7", "tip"]).detachments.sizes["number"] == 0
+    free = wm.read_tracking(FILM, **SCALE, points=["base", "w2", "w3", "w5", "w7", "tip"])
+    with pytest.raises(ValueError, match="^detachments: pole and contact_within_mm must be given to read_tracking"):
+        free.detachments
+
+
+def test_results_can_be_pickled():
+    for film in (wm.read_tracking(FILM, **SCALE, **POLE), wm.read_tracking(ROWS, **SCALE)):
+        again = pickle.loads(pickle.dumps(film))
+        xr.testing.assert_identical(again.frames, film.frames)
+        assert again.notes == film.notes and again.format == film.format
+        assert "_points" not in repr(film)
+    film = wm.read_tracking(FILM, **SCALE, **POLE)
+    again = pickle.loads(pickle.dumps(film))
+    xr.testing.assert_identical(again.detachments, film.detachments)
+    np.testing.assert_array_equal(again.shape(2), film.shape(2))
 
 
 def test_a_shape_is_the_rest_points_of_a_whisker():
@@ -62,8 +82,10 @@ def test_a_shape_is_the_rest_points_of_a_whisker():
     whisker = wm.Whisker(base_radius_um=30, tip_radius_um=1.5, youngs_modulus_gpa=3, rest_points=points)
     scene = wm.Scene(whisker=whisker, grid=wm.Grid(push_angle_deg=[10], distance_mm=[15]))
     assert abs(scene.whisker.length_mm - 20) < 0.1
-    with pytest.raises(ValueError, match="shape = 4: must be a frame with a whisker"):
+    with pytest.raises(ValueError, match="^frame = 4: must be a frame with a whisker: this one is a gap"):
         found.shape(4)
+    with pytest.raises(TypeError, match="^frame = 1.5: must be a whole number"):
+        found.shape(1.5)
     for frame in (-1, 56, 10**30):
         with pytest.raises(ValueError, match=f"^frame = {frame}: must be between 0 and 55, the numbers of the frames"):
             found.shape(frame)
@@ -74,6 +96,8 @@ def test_a_shape_is_the_rest_points_of_a_whisker():
 def test_measurements_come_as_csv_and_as_nwb(tmp_path):
     found = wm.read_tracking(ROWS, **SCALE)
     assert found.format == "whisk" and found.frames.reason.values[25] == "missing"
+    with pytest.raises(ValueError, match="^frame = 3: has no points: measurements of whisk are without points along the whisker"):
+        found.shape(3)
     pynwb, ndx_whisk = pytest.importorskip("pynwb"), pytest.importorskip("ndx_whisk")
     from datetime import datetime, timezone
 
@@ -115,6 +139,7 @@ def test_bad_values_are_refused(tmp_path):
         ({"pole": [1]}, ValueError, "pole: must be x and y in pixels, has 1 numbers"),
         ({"points": "base"}, TypeError, "points = 'base': must be a list of names"),
         ({"whisker": 1.5}, TypeError, "whisker = 1.5: must be a whole number"),
+        ({"whisker": True}, TypeError, "whisker = True: must be a whole number"),
         ({"degree": -1}, ValueError, "degree = -1: must be between 0 and 6"),
         ({"fps": "500"}, TypeError, "fps = '500': must be a number, without a unit"),
     ]:
@@ -126,5 +151,15 @@ def test_bad_values_are_refused(tmp_path):
 
 
 def test_a_distance_in_contact_that_is_too_small_warns():
-    with pytest.warns(wm.SceneWarning, match="more than 0.1 mm: check --contact-within"):
+    with pytest.warns(wm.SceneWarning, match="more than 0.1 mm: check `contact_within_mm`, the pole's position, `taper` and `mm_per_pixel`"):
         wm.read_tracking(FILM, **SCALE, pole="pole", contact_within_mm=0.1)
+
+
+def test_messages_name_the_options_of_the_caller():
+    """Python has arguments; the program has flags."""
+    with pytest.warns(wm.SceneWarning, match="give the parts along the whisker by `points`, and the pole by `pole`"):
+        found = wm.read_tracking(FILM, **SCALE)
+    command = [Path(sys.executable).parent / "whiskmap", "import", FILM, "--mm-per-pixel", "0.05", "--fps", "500"]
+    printed = subprocess.run(command, capture_output=True, text=True).stderr
+    assert "give the parts along the whisker by --points, and the pole by --pole" in printed and "`" not in printed
+    assert not any("--" in note for note in found.notes)

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import operator
 import os
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, Union
@@ -13,10 +12,10 @@ from typing import TYPE_CHECKING, Any, Literal, Union
 import numpy as np
 import xarray as xr
 
+from whiskmap import _whiskmap
 from whiskmap._datasets import variables
-from whiskmap._values import csv_text, number, numbers
+from whiskmap._values import csv_text, number, numbers, whole
 from whiskmap._warnings import require, warn
-from whiskmap._whiskmap import TrackedFilm
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -37,8 +36,6 @@ class Tracking:
         Frames by `time_s`, from the first to the last one, as `force` takes them. `angle_deg` is the angle of the base for `whisk`,
         `curvature_per_mm` the curvature at `at_arc_length_mm`, and `contact` is 1 or 0, or NaN where it is not known. Numbers of gaps are NaN, with a `reason`: "missing"
         (the tracker has lost the whisker or its base, or has too few points) or "no-curve" (the points lie along no smooth curve).
-    detachments : xarray.Dataset
-        Detachments from the pole by `number`, as `fit` takes them: `side`, `distance_mm`, `push_angle_deg` and `time_s`. Empty without a pole.
     notes : list of str
         What was found: the base, a mirrored image, the degree of curves, gaps.
     format : str
@@ -46,10 +43,26 @@ class Tracking:
     """
 
     frames: xr.Dataset
-    detachments: xr.Dataset
     notes: list[str]
     format: str
-    _film: TrackedFilm
+    # None without a pole.
+    _detachments: xr.Dataset | None = field(repr=False)
+    # Points of all frames one after the other, `[point][x, y]`, and the index at which each frame begins, `[frame]`, with the end of the last.
+    _points: NDArray[np.float64] = field(repr=False)
+    _begins: NDArray[np.int64] = field(repr=False)
+
+    @property
+    def detachments(self) -> xr.Dataset:
+        """Detachments from the pole by `number`, as `fit` takes them: `side`, `distance_mm`, `push_angle_deg` and `time_s`.
+
+        Raises
+        ------
+        ValueError
+            If the film was read without `pole`.
+        """
+        if self._detachments is None:
+            raise ValueError("detachments: pole and contact_within_mm must be given to read_tracking, as they show when the whisker leaves the pole")
+        return self._detachments
 
     def shape(self, frame: int) -> NDArray[np.float64]:
         """Return the traced points of a frame from base to tip, of shape (points, 2), in mm, for `rest_points` of a `Whisker`.
@@ -58,12 +71,19 @@ class Tracking:
         ------
         ValueError
             If the frame is a gap or there is none of this number, or the format has no points.
+        TypeError
+            If the frame is no whole number.
         """
-        number = operator.index(frame)
+        number = whole("frame", frame)
         first, last = (int(self.frames["frame"][end]) for end in (0, -1))
         if not first <= number <= last:
             raise ValueError(f"frame = {number}: must be between {first} and {last}, the numbers of the frames")
-        return np.array(self._film.shape(number), dtype=np.float64)
+        if self.format == "whisk":
+            raise ValueError(f"frame = {number}: has no points: measurements of whisk are without points along the whisker")
+        begin, end = self._begins[number - first :][:2]
+        if begin == end:
+            raise ValueError(f"frame = {number}: must be a frame with a whisker: this one is a gap")
+        return self._points[begin:end].copy()
 
 
 def read_tracking(
@@ -119,7 +139,7 @@ def read_tracking(
     face_axis : {"x", "y"}, optional
         Axis of the image from which the angles of `whisk` are measured; found if left out.
     pole : (x, y) or str, optional
-        Centre of the pole in pixels, or the body part of DeepLabCut that is its centre.
+        Centre of the pole in pixels, or the body part of DeepLabCut that is its centre; needed for contacts and `detachments`.
     contact_within_mm : float, optional
         Largest distance of the whisker from the pole's centre in contact; needed with `pole`.
     taper : float, optional
@@ -153,13 +173,13 @@ def read_tracking(
         "format": format,
         "mm_per_pixel": number("mm_per_pixel", mm_per_pixel),
         "fps": number("fps", fps),
-        "whisker": _whole("whisker", whisker),
+        "whisker": None if whisker is None else whole("whisker", whisker),
         "points": list(points),
         "likelihood": number("likelihood", likelihood),
         "follicle_px": None if follicle_px is None else _pair("follicle_px", follicle_px),
         "curvature_at_mm": None if curvature_at_mm is None else number("curvature_at_mm", curvature_at_mm),
         "fit_to_mm": None if fit_to_mm is None else number("fit_to_mm", fit_to_mm),
-        "degree": _whole("degree", degree),
+        "degree": None if degree is None else _degree(degree),
         "mirror": mirror,
         "face_axis": face_axis,
         "pole": pole if pole is None or isinstance(pole, str) else _pair("pole", pole),
@@ -167,22 +187,24 @@ def read_tracking(
         "taper": None if taper is None else number("taper", taper),
         "zero_s": None if zero_s is None else number("zero_s", zero_s),
     }
-    film = TrackedFilm.parse([(_text(Path(path)), os.fspath(path)) for path in paths], options)
-    frames = xr.Dataset(variables(film.frames(), ("time_s",), (-1,))).set_coords("time_s")
-    warn(film.warnings())
-    detachments = xr.Dataset(variables(film.detachments(), ("number",), (-1,)))
-    return Tracking(frames, detachments, film.notes(), film.format(), film)
+    film = _whiskmap.read_tracking([(_text(Path(path)), os.fspath(path)) for path in paths], options)
+    warn(film["warnings"])
+    detachments = None if pole is None else xr.Dataset(variables(film["detachments"], ("number",), (-1,)))
+    return Tracking(
+        frames=xr.Dataset(variables(film["frames"], ("time_s",), (-1,))).set_coords("time_s"),
+        notes=film["notes"],
+        format=film["format"],
+        _detachments=detachments,
+        _points=film["points"].reshape(-1, 2),
+        _begins=np.append(0, np.cumsum(film["counts"])),
+    )
 
 
-def _whole(name: str, value: Any) -> int | None:
-    if value is None:
-        return None
-    if isinstance(value, bool) or not hasattr(value, "__index__"):
-        raise TypeError(f"{name} = {value!r}: must be a whole number")
-    own = int(value.__index__())
-    if name == "degree" and own < 0:
-        raise ValueError(f"degree = {own}: must be between 0 and 6")
-    return own
+def _degree(value: Any) -> int:
+    degree = whole("degree", value)
+    if degree < 0:
+        raise ValueError(f"degree = {degree}: must be between 0 and 6")
+    return degree
 
 
 def _pair(name: str, values: Any) -> list[float]:

@@ -3,12 +3,12 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypedDict, final
 
-from numpy import bool_, float64, uint8
+from numpy import bool_, float64, int64, uint8
 from numpy.typing import NDArray
 
 __all__ = [
-    "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "TrackedFilm", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
-    "curve", "design", "designs", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "regimes", "run_command", "shape", "texture", "unused_columns", "variables",
+    "CheckedScene", "ComputedMap", "SceneError", "StateError", "StoredMap", "arithmetic", "axis_title", "branch", "channel_attributes", "channels", "coordinates",
+    "curve", "design", "designs", "detachment", "fit", "force", "inks", "locate", "map", "parameters", "plan", "read_tracking", "regimes", "run_command", "shape", "texture", "unused_columns", "variables",
     "version", "whisk",
 ]
 
@@ -80,16 +80,14 @@ class StoredMap:
     def read(self, channel: str, whiskers: Sequence[int]) -> NDArray[Any]: ...
     def __reduce__(self) -> tuple[type[StoredMap], tuple[str]]: ...
 
-@final
-class TrackedFilm:
-    @staticmethod
-    def parse(texts: Sequence[tuple[str, str]], options: Mapping[str, Any]) -> TrackedFilm: ...
-    def format(self) -> str: ...
-    def frames(self) -> list[_Column]: ...
-    def detachments(self) -> list[_Column]: ...
-    def notes(self) -> list[str]: ...
-    def warnings(self) -> list[str]: ...
-    def shape(self, frame: int) -> list[list[float]]: ...
+class _Film(TypedDict):
+    format: str
+    frames: list[_Column]
+    detachments: list[_Column]
+    points: NDArray[float64]
+    counts: NDArray[int64]
+    notes: list[str]
+    warnings: list[str]
 
 class _FitResult(TypedDict):
     scene: CheckedScene
@@ -147,6 +145,7 @@ def locate(
 def fit(
     scene: CheckedScene, points: str, origin: str, free: Sequence[str], loss: str, columns: Sequence[tuple[str, str]]
 ) -> _FitResult: ...
+def read_tracking(texts: Sequence[tuple[str, str]], options: Mapping[str, Any]) -> _Film: ...
 def design(
     scene: CheckedScene, parameter: tuple[str, tuple[float, float] | None], goal: str, value: float,
     distance: tuple[float, bool] | None, side: str | None, keeps_taper: bool,
