@@ -141,7 +141,7 @@ def test_bad_arguments_are_refused(sweep):
         ({"engine": "fast"}, "engine = 'fast': must be 'auto', 'cpu', 'spectral' or 'gpu'"),
         ({"channels": ["force"]}, "channels = 'force': must be a list of names"),
         ({"tolerance_deg": -1.0}, "tolerance_deg = -1"),
-        ({"threads": 0}, "threads = 0: must be between 1 and 1024"),
+        ({"threads": 0}, "threads = 0: must be a whole number between 1 and 1024"),
     ):
         with pytest.raises(ValueError, match=why):
             wm.map(sweep, lazy=True, **options)
