@@ -201,8 +201,8 @@ pub fn run(args: &ImportArgs, files: &mut Files) -> Result<(), Failure> {
     let output = files.output("--output", &args.output)?;
     let tracking = Tracking::read(&args.files, &args.options(), &AtomicBool::new(false))?;
     let shape = args.shape.map(|frame| tracking.shape(frame)).transpose()?;
-    notes(&with_flags(&tracking.notes));
-    warnings(&with_flags(&tracking.warnings));
+    notes(with_flags(&tracking.notes));
+    warnings(with_flags(&tracking.warnings));
     match shape {
         Some(points) => write(output, TrackedPoint::COLUMNS, points),
         None if args.detachments => {
