@@ -47,6 +47,7 @@ def test_a_single_detachment_is_a_dot(cone):
             wm.plot.curve(ends.where(ends.kind == kind), ax=axes, color="magenta")
             figure.canvas.draw()
             assert (np.asarray(figure.canvas.buffer_rgba())[..., :3] == (255, 0, 255)).all(axis=-1).any(), kind
+            plt.close(figure)
     lines = wm.plot.curve(ends, ax=plt.subplots()[1])
     assert [(line.get_marker(), line.get_markevery()) for line in lines] == [("None", None), ("o", [4])]
 
