@@ -112,7 +112,8 @@ def read_tracking(
     ----------
     files : path or sequence of paths
         A CSV file of DeepLabCut, measurements of Janelia's `whisk` as CSV, an NWB file with a `WhiskerMeasurementTable` of ndx-whisk (extra
-        `nwb`), or points without a header: ``x,y``, a file for each frame, or ``frame,x,y``.
+        `nwb`), or points ``x,y``, a file for each frame, or ``frame,x,y``. The number of a frame is the only number in which the names
+        of files or images differ.
     mm_per_pixel : float
         Scale of the image.
     fps : float

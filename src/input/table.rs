@@ -32,7 +32,7 @@ impl CsvError {
 }
 
 /// Cells of measurements that stand for a missing value, in either case.
-const MISSING: [&str; 7] = ["", "NaN", "-NaN", "NA", "N/A", "null", "none"];
+const MISSING: [&str; 8] = ["", "NaN", "-NaN", "NA", "N/A", "#N/A", "null", "none"];
 
 /// CSV file as text: a header, and at least one row below it.
 ///
@@ -232,7 +232,7 @@ impl CsvTable {
     }
 
     /// Returns the numbers of a column of measurements, row by row, as [`CsvTable::numbers`] does. A missing value, an empty cell, `NaN`,
-    /// `NA`, `N/A`, `null` or `none` in either case, is NaN.
+    /// `NA`, `N/A`, `#N/A`, `null` or `none` in either case, is NaN.
     ///
     /// # Errors
     /// Fails as [`CsvTable::numbers`] does, but for missing values.

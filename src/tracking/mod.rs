@@ -139,7 +139,7 @@ row! {
 }
 
 impl Tracking {
-    /// Reads the files of a tracker; `-` is standard input. Only points without a header may come in several files, one for each frame, in
+    /// Reads the files of a tracker; `-` is standard input. Only points `x,y` may come in several files, one for each frame, in
     /// any order if their names have its number.
     ///
     /// # Errors

@@ -12,7 +12,7 @@ pub enum TrackingFormat {
     DeepLabCut,
     /// Measurements of `whisk` as CSV: a row for each traced segment, with follicle, tip, angle and mean curvature.
     Whisk,
-    /// Points without a header: `x,y`, a file for each frame, or `frame,x,y`.
+    /// Points `x,y`, a file for each frame, or `frame,x,y`, with or without these names in the first line.
     Xy,
 }
 
@@ -31,10 +31,11 @@ impl TrackingFormat {
         match &cells[..] {
             ["scorer", ..] => Ok(Self::DeepLabCut),
             _ if cells.contains(&"follicle_x") => Ok(Self::Whisk),
+            ["x", "y"] | ["frame", "x", "y"] => Ok(Self::Xy),
             _ if line.is_empty() || cells.iter().all(is_number) => Ok(Self::Xy),
             _ => {
                 let what = "has no known format: must be of DeepLabCut (the first cell is scorer), measurements of whisk (with a column \
-                            follicle_x), or points without a header";
+                            follicle_x), or points x,y or frame,x,y";
                 Err(CsvError::whole(origin, what))
             }
         }

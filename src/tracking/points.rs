@@ -1,4 +1,4 @@
-//! Points along the whisker without a header: `x,y`, a file for each frame, or `frame,x,y`.
+//! Points along the whisker: `x,y`, a file for each frame, or `frame,x,y`. The names may be in the first line.
 
 use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
@@ -11,7 +11,7 @@ pub(super) fn read(
     options: &TrackingOptions,
 ) -> Result<ImageFrames, TrackingError> {
     let nameless = |option, value: &str| {
-        let must = "must be left out with points without a header: they have no names".to_owned();
+        let must = "must be left out with points x,y: they have no names".to_owned();
         Err(refused(option, value, must))
     };
     if let Some(whisker) = options.whisker {
@@ -28,7 +28,12 @@ pub(super) fn read(
     let mut frames: Vec<ImageFrame> = Vec::new();
     let (files, note) = in_order(texts)?;
     for (file, (text, origin)) in files {
-        let lines = CsvLines::split(text, origin)?;
+        let mut lines = CsvLines::split(text, origin)?;
+        let names = [&["x", "y"][..], &["frame", "x", "y"]];
+        let is_header = |line: &CsvLine| names.iter().any(|names| line.cells == **names);
+        if lines.lines.first().is_some_and(is_header) {
+            lines.lines.remove(0);
+        }
         let columns = lines.lines.first().map_or(2, |line| line.cells.len());
         let names: &[&str] = match columns {
             2 => &["x", "y"],

@@ -332,6 +332,9 @@ fn points_without_a_header_come_back() {
         assert_near(row.angle_deg, ANGLES[0] - angle, 1e-7);
         assert_near(row.curvature_per_mm, 0.04, 1e-9);
     }
+    let headed: Vec<(String, String)> =
+        files.iter().map(|(text, name)| (format!("x,y\n{text}"), name.clone())).collect();
+    assert_eq!(Tracking::parse(&headed, &options(), &cancel).unwrap(), several);
     // One frame does not show which end is the base.
     let single = parse(&points(0), &options()).unwrap();
     assert!(single.notes[0].contains("points are taken from base to tip as they are given"));
@@ -354,7 +357,7 @@ fn points_without_numbers_are_lost() {
     let all = Tracking::parse(&files, &options(), &cancel).unwrap().frames;
     // Odd frames are given from tip to base. Frame 1 loses its tip, 2 its base, 3 its base, and 4 a point between.
     for (frame, which, marker) in
-        [(1, 0, "NA,NA"), (2, 0, "nan,3"), (3, 20, ",4"), (4, 7, "none,N/A")]
+        [(1, 0, "NA,NA"), (2, 0, "nan,3"), (3, 20, ",4"), (4, 7, "none,#N/A")]
     {
         files[frame].0 = lost(frame, which, marker);
     }

@@ -218,7 +218,7 @@ fn options_that_do_not_fit_are_refused() {
         (
             &points,
             with(&|options| options.whisker = Some(1)),
-            "whisker = 1: must be left out with points without a header",
+            "whisker = 1: must be left out with points x,y",
         ),
         (
             &points,

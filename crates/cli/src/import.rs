@@ -23,8 +23,8 @@ Examples:
   whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --pole pole --contact-within 0.3mm --shape 0 -o traced.csv
   whiskmap import scenes/measurements.csv --mm-per-pixel 0.05 --fps 500 -o frames.csv
 
-FILE is a CSV file of DeepLabCut, measurements of whisk as CSV, or points along the whisker without a header: x,y in a file for each frame, or \
-frame,x,y. Positions are in pixels, and the y axis of the image points downward.
+FILE is a CSV file of DeepLabCut, measurements of whisk as CSV, or points along the whisker: x,y in a file for each frame, or \
+frame,x,y, with or without these names in the first line. Positions are in pixels, and the y axis of the image points downward.
 
 The base is the end of the whisker that moves less, or the one nearer to --follicle. The image is mirrored if the whisker turns clockwise \
 from base to tip. Lost frames are rows with a reason.";
@@ -32,7 +32,7 @@ from base to tip. Lost frames are rows with a reason.";
 const FORMAT_HELP: [&str; 3] = [
     "CSV file with the rows scorer, bodyparts and coords",
     "Measurements of Janelia's whisk as CSV",
-    "Points without a header: x,y or frame,x,y",
+    "Points x,y or frame,x,y, with or without a header",
 ];
 
 const FACE_AXIS_HELP: [&str; 2] = [
