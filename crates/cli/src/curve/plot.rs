@@ -21,10 +21,7 @@ pub const MOST_WHISKERS: usize = 2000;
 /// Number of significant digits of values in the legend.
 const NAME_DIGITS: usize = 4;
 
-/// Number of values of an axis up to which each has its own colour.
-const MOST_COLOURS: usize = 7;
-
-/// Names of values in the legend if there are more than [`MOST_COLOURS`].
+/// Number of values in the legend where not each has a colour of its own.
 const NAMED: usize = 5;
 
 /// Returns the title of the plot: that of the scene, and how many rows of the table have no whisker.
@@ -70,9 +67,9 @@ pub fn scene_curves(scene: &Scene, resolution: Resolution, x: CurveAxis) -> Plot
             }
             (_, None) => String::new(),
         };
-        let is_few = last < MOST_COLOURS;
-        let is_shown = is_few || (0..NAMED).any(is_named);
-        (Some(Ink::of_series(place, values.len())), if is_shown { name } else { String::new() })
+        let ink = Ink::of_series(place, values.len());
+        let is_shown = matches!(ink, Ink::Series(_)) || (0..NAMED).any(is_named);
+        (Some(ink), if is_shown { name } else { String::new() })
     });
     let looks: Vec<(Option<Ink>, String)> = looks.collect();
     let all = drawn.iter().zip(&looks);
