@@ -1,6 +1,7 @@
 //! Names of own columns in place of those that a table must have.
 
 use super::names::{did_you_mean, shortened};
+use super::quantity::Quantity;
 use super::table::{CsvError, CsvTable};
 use std::fmt;
 use std::str::FromStr;
@@ -49,6 +50,14 @@ impl fmt::Display for ColumnName {
     }
 }
 
+/// Returns the unit at the end of the name of a column `in_file` if the `expected` column has another unit of the same quantity.
+fn other_unit(in_file: &str, expected: &str) -> Option<&'static str> {
+    let (end, quantity) = (in_file.rsplit('_').next()?, Quantity::of(expected));
+    let is_end = |unit: &&str| unit.eq_ignore_ascii_case(end);
+    let unit = quantity.units().find(is_end).filter(|_| in_file.contains('_'))?;
+    (Some(unit) != quantity.unit()).then_some(unit)
+}
+
 impl CsvTable {
     /// Returns the CSV table with column names of the file replaced by the expected ones, which must be among the `known` names of its
     /// columns.
@@ -75,6 +84,12 @@ impl CsvTable {
                 let all = known.join(", ");
                 return refused(format!("`{expected}` is not known; must be one of {all}{hint}"));
             };
+            if let Some(unit) = other_unit(in_file, name) {
+                let own = Quantity::of(name).unit().unwrap_or_default();
+                return refused(format!(
+                    "the column is in {unit}; values must be in {own}: convert them"
+                ));
+            }
             if renamed.iter().any(|(_, other)| *other == name) {
                 return refused(format!("`{name}` is given twice"));
             }

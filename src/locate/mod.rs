@@ -91,7 +91,7 @@ row! {
         pub base_force_y_un: Option<f64> = load,
         /// Difference of the state's numbers from the reading: over the reading's size, or in standard deviations if these are given.
         pub misfit: Option<f64>,
-        /// Largest over smallest change of the measured numbers for equal relative changes of contact and load; infinite on a singular line.
+        /// Largest over smallest change of the measured numbers for equal relative changes of the contact's arclength and the load f/rho^2; infinite on a singular line.
         pub condition: Option<f64>,
         /// Standard deviation of the arclength of the contact, in mm.
         pub arc_length_sd_mm: Option<f64>,

@@ -21,7 +21,8 @@ row! {
 }
 
 /// Returns the contacts that end with the pole on the other side of the whisker. A contact counts if the frames before and after it are known
-/// to be without contact. A note gives the number of the others.
+/// to be without contact. A note gives the number of the others. A gap in a contact counts as contact, unless it has the pole on other sides before
+/// and after.
 pub(super) fn detachments(
     rows: &[TrackedFrame],
     places: &[Option<NearestPlace>],
@@ -32,6 +33,7 @@ pub(super) fn detachments(
     let mut found = Vec::new();
     let mut touch: Option<usize> = None;
     let mut left_out = 0;
+    let is_left = |i: usize| places[i].map(|place| place.offset_mm > 0.0);
     for pair in known.windows(2) {
         let [(before, was_in_contact), (after, is_in_contact)] = [pair[0], pair[1]];
         // A gap before the first touch or after the last one hides when it was.
@@ -42,6 +44,11 @@ pub(super) fn detachments(
                 Some(touch) => found.extend(detachment(rows, places, touch, after)),
                 None => left_out += 1,
             },
+            // The gap hides the end of one contact and the first touch of another one.
+            (true, true) if !is_shown && is_left(before) != is_left(after) => {
+                touch = None;
+                left_out += 1;
+            }
             _ => {}
         }
     }

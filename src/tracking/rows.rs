@@ -218,14 +218,16 @@ fn zero(
     };
     // On CB, the base turns on in the positive direction.
     let is_cb = |pair: &&[TrackedFrame]| pair[1].angle_deg > pair[0].angle_deg;
-    let (row, what) = match touches().find(is_cb).or_else(|| touches().next()) {
-        Some(pair) => (Some(&pair[1]), "first touch"),
-        None => (rows.iter().find(|row| row.angle_deg.is_some()), "the first frame with a whisker"),
-    };
-    if let Some(row) = row {
+    let of_cb = touches().find(is_cb).map(|pair| (&pair[1], "first touch on CB"));
+    let other = "first touch on CF; in `whisk`, angles are 0 at first touch on CB";
+    let of_cf = || Some((touches().next()?.last()?, other));
+    let any =
+        || Some((rows.iter().find(|row| row.angle_deg.is_some())?, "the first one with a whisker"));
+    let found = of_cb.or_else(of_cf).or_else(any);
+    if let Some((row, what)) = found {
         notes.push(format!("angles of the base are 0 in frame {}, {what}", row.frame));
     }
-    Ok(row.and_then(|row| row.angle_deg).unwrap_or_default())
+    Ok(found.and_then(|(row, _)| row.angle_deg).unwrap_or_default())
 }
 
 /// Adds a note with the numbers of gaps, and of frames in contact.

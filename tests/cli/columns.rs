@@ -140,3 +140,17 @@ fn names_of_columns_need_a_table() {
     }
     assert!(!place.path("figures").exists());
 }
+
+/// The values of a column keep their unit, so one with another unit in its name is refused.
+#[test]
+fn columns_in_other_units_are_refused() {
+    let place = Place::with(SCENE);
+    place.write("rad.csv", "time_ms,angle_rad\n0,0\n1,0.3\n");
+    let whisk = ["whisk", "scene.toml", "--distance", "15", "--angles", "rad.csv", "--columns"];
+    for (columns, said) in [
+        ("angle=angle_rad", "columns angle=angle_rad: the column is in rad; values must be in deg"),
+        ("time=time_ms", "columns time=time_ms: the column is in ms; values must be in s"),
+    ] {
+        place.run(&[&whisk[..], &[columns]].concat()).assert_refused(&[said]);
+    }
+}

@@ -100,3 +100,25 @@ fn points_that_never_detach() {
         "{run:?}"
     );
 }
+
+/// In an elastic follicle, the base that a film shows is not the axis that angles belong to: commands with measured angles say so.
+#[test]
+fn a_follicle_has_a_note_on_measured_angles() {
+    let place = Place::with(SCENE);
+    let soft = format!("{SCENE}[whisker.follicle]\nstiffness_nnm_per_rad = 5000\n");
+    place.write("soft.toml", &soft);
+    place.write("points.csv", "side,distance_mm,push_angle_deg\ncb,10,30\n");
+    place.write("course.csv", "time_s,angle_deg\n0,0\n1,3\n");
+    let note =
+        "note: whisker.follicle: angles are those of the follicle's axis; a film shows those of";
+    for (scene, is_soft) in [("scene.toml", false), ("soft.toml", true)] {
+        for words in [
+            &["curve", scene, "--data", "points.csv"][..],
+            &["whisk", scene, "--distance", "15", "--angles", "course.csv"],
+            &["fit", scene, "--data", "points.csv", "--free", "tip_radius_um"],
+        ] {
+            let run = place.run(words);
+            assert_eq!(run.err.contains(note), is_soft, "{run:?}");
+        }
+    }
+}

@@ -127,11 +127,16 @@ fn samples_without_sense_are_refused() {
         &["--samples", "1000000"],
         &["--samples 1000000: makes 24000000 ends at the scene's 24 distances", "at most 16777216"],
     );
-    let sweep = format!("{SCENE}curvature_per_mm = [0.02]\n{UNCERTAIN}");
+    let sweep = format!("{SCENE}curvature_per_mm = [0.02, 0.03]\n{UNCERTAIN}");
     place.write("sweep.toml", &sweep);
-    place
-        .run(&["curve", "sweep.toml", "--samples", "20"])
-        .assert_refused(&["grid.curvature_per_mm: must be left out"]);
+    let words = ["curve", "sweep.toml", "--samples", "5", "--distance", "10"];
+    place.run(&words).assert_refused(&[
+        "grid.curvature_per_mm: the scene sweeps 2 whiskers, but curve --samples needs one; select it by --at",
+    ]);
+    // A selected whisker is one.
+    let run = place.good(&[&words[..], &["--at", "curvature_per_mm=0.02"]].concat());
+    let alone = place.quiet(&["curve", "scene.toml", "--samples", "5", "--distance", "10"]);
+    assert_eq!(run.out, alone.out);
     let left = ["plain.toml", "scene.toml", "sweep.toml"];
     assert_eq!(names(&place.path("")), left);
 }

@@ -154,3 +154,40 @@ fn a_whisker_of_an_unlikely_length_is_named() {
     let warnings = parse(&film, &options()).unwrap().warnings;
     assert!(!warnings.iter().any(|warning| warning.contains("mm long")), "{warnings:?}");
 }
+
+/// Frames that are lost while the whisker slips off, returns and touches the pole on its other side join two contacts, which give no detachment.
+#[test]
+fn a_gap_between_contacts_on_both_sides_hides_their_ends() {
+    let (text, pole, _) = film(CONE, Side::Cb, 8, 0.0);
+    let (back, other_pole, _) = film(CONE, Side::Cf, 8, 0.0);
+    let whole = parse(&text, &at_pole(pole, &|_| ())).unwrap();
+    assert_eq!(whole.detachments.len(), 1);
+    let contacts = |found: &Tracking| {
+        let rows = found.frames.iter().filter(|row| row.contact == Some(1));
+        rows.map(|row| row.frame).collect::<Vec<_>>()
+    };
+    let on_cb = contacts(&whole);
+    let of_back = parse(&back, &at_pole(other_pole, &|_| ())).unwrap();
+    assert!(of_back.notes.iter().any(|note| note.contains("first touch on CF; in `whisk`")));
+    assert!(whole.notes.iter().any(|note| note.ends_with("first touch on CB")));
+    let on_cf = contacts(&of_back);
+    // The second film moves to the pole of the first one. From its contacts on, it follows those of the first one, after a gap.
+    let [until, from] = [on_cb[on_cb.len() - 4], on_cf[on_cf.len() / 2]];
+    let moved = [pole[0] - other_pole[0], pole[1] - other_pole[1]];
+    let numbered = |line: &str, to: &dyn Fn(u64) -> Option<u64>, by: [f64; 2]| {
+        let cells: Vec<&str> = line.split(',').collect();
+        let frame = to(cells[0].parse().unwrap())?;
+        let [x, y]: [f64; 2] = [1, 2].map(|i| cells[i].parse().unwrap());
+        Some(format!("{frame},{:?},{:?}\n", x + by[0], y + by[1]))
+    };
+    let first = |frame: u64| (frame <= until).then_some(frame);
+    let second = |frame: u64| (frame >= from).then(|| until + 5 + frame - from);
+    let both = text.lines().filter_map(|line| numbered(line, &first, [0.0; 2]));
+    let both = both.chain(back.lines().filter_map(|line| numbered(line, &second, moved)));
+    let joined = parse(&both.collect::<String>(), &at_pole(pole, &|_| ())).unwrap();
+    let known = joined.frames.iter().filter(|row| row.contact == Some(1)).count() as u64;
+    assert!(known > on_cb.len() as u64 / 2, "{known}");
+    assert_eq!(joined.detachments, [], "{:?}", joined.notes);
+    let count = "next to a gap or outside the film: 2";
+    assert!(joined.notes.iter().any(|note| note.ends_with(count)), "{:?}", joined.notes);
+}

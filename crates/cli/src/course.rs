@@ -55,6 +55,11 @@ impl CourseArgs {
         files.inputs("--angles", &self.angles)
     }
 
+    /// Returns true if the course is in a file.
+    pub const fn is_measured(&self) -> bool {
+        self.angles.is_some()
+    }
+
     /// Returns the course of the base's angle: a sine, or the samples of the CSV file that the options name.
     pub fn course(&self) -> Result<AngleCourse, Failure> {
         if let (None, Some([amplitude, frequency, seconds])) = (&self.angles, self.sine) {

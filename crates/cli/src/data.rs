@@ -5,7 +5,7 @@ use clap::Args;
 use std::path::Path;
 use whiskmap::input::{ColumnName, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
-use whiskmap::scene::{digits, rounded};
+use whiskmap::scene::{Scene, digits, rounded};
 
 // Option of all commands that read a table. In each of these commands, the options that name a table are the group `table`.
 #[derive(Debug, Args)]
@@ -30,6 +30,15 @@ pub fn read(path: &Path, columns: &ColumnArgs) -> Result<MeasuredPoints, Failure
     notes(&points.note);
     warnings([points.missing(), points.crossed()].into_iter().flatten());
     Ok(points)
+}
+
+/// Prints to which angles measured ones are compared, if the scene has an elastic follicle.
+pub fn note_follicle(scene: &Scene) {
+    let mut whiskers = scene.whiskers().flatten();
+    let turns = whiskers.any(|swept| swept.whisker.follicle_stiffness_nnm_per_rad.is_some());
+    notes(turns.then_some(
+        "whisker.follicle: angles are those of the follicle's axis; a film shows those of the whisker's base, which bends away from it",
+    ));
 }
 
 /// Prints the measured points that are left out because their side never detaches by theory.

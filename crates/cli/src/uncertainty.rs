@@ -8,7 +8,7 @@ use clap::Args;
 use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::scene::Scene;
-use whiskmap::uncertainty::{DrawError, Draws, EndSpread, LargestSpread};
+use whiskmap::uncertainty::{Draws, EndSpread, LargestSpread};
 
 #[derive(Debug, Args)]
 pub struct SampleArgs {
@@ -25,18 +25,20 @@ pub struct SampleArgs {
 }
 
 impl SampleArgs {
+    /// Returns true with --samples.
+    pub const fn draws(&self) -> bool {
+        self.samples.is_some()
+    }
+
     /// Draws the random whiskers of a scene; `None` without --samples.
     pub fn draw(&self, scene: &Scene) -> Result<Option<Draws>, Failure> {
         let Some(samples) = self.samples else {
             return Ok(None);
         };
         check_single(scene, "curve --samples")?;
-        let draws =
-            Draws::new(scene, samples as usize, u64::from(self.seed)).map_err(|why| match why {
-                DrawError::Sweep(_) => Failure::Input(format!("{why} with --samples")),
-                _ => Failure::Input(format!("--samples {samples}: {why}")),
-            })?;
-        Ok(Some(draws))
+        let draws = Draws::new(scene, samples as usize, u64::from(self.seed));
+        let refused = |why| Failure::Input(format!("--samples {samples}: {why}"));
+        draws.map(Some).map_err(refused)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::arguments::{column_help, duration, named};
 use super::course::{CourseArgs, counts, energy};
+use super::data::note_follicle;
 use super::failure::{Failure, message, warnings};
 use super::files::Files;
 use super::marks::{STRAIN_MARKS, marked};
@@ -62,6 +63,9 @@ pub fn run(args: &WhiskArgs, files: &mut Files) -> Result<(), Failure> {
     args.course.declare(files)?;
     let (scene, whisker) = pole::read(files, &args.pole.whisker, "whisk", &[distance])?;
     let course = args.course.course()?;
+    if args.course.is_measured() {
+        note_follicle(&scene);
+    }
     let mut outputs = args.outputs.open(files)?;
     let events = args.outputs.table(files, "--events", args.events.as_deref())?;
     let mut options = WhiskOptions::default();

@@ -130,6 +130,9 @@ pub fn run(args: &CurveArgs, files: &mut Files) -> Result<(), Failure> {
         distances.dedup();
         scene = scene.to_builder().distance_mm(distances).build()?;
     }
+    if args.sampling.draws() && scene.whisker_count() == 1 {
+        scene = scene.of_whisker(0)?;
+    }
     let variables = args.derivatives.variables(&scene, &[])?;
     if args.outputs.picture.plot.is_some() {
         check_whiskers_of_plot(&scene)?;

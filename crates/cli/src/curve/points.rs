@@ -25,6 +25,7 @@ pub fn compare(
     let SweptWhisker { whisker, pole, place } = scene.first_whisker();
     let points = data::read(path, &args.columns)?.at(&place)?;
     points.check_reach(&whisker, &pole)?;
+    data::note_follicle(scene);
     let measured_mm = points.points.iter().map(|point| point.distance_mm);
     let distances = covering(&scene.grid.distance_mm, measured_mm);
     let scene = &scene.to_builder().distance_mm(distances).build()?;

@@ -82,6 +82,7 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
         }
         false => (scene, points),
     };
+    data::note_follicle(&scene);
     let mut open = |option, path: &Option<PathBuf>| {
         let output = path.as_deref().map(|path| files.output(option, path));
         output.transpose()
