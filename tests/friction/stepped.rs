@@ -106,10 +106,7 @@ impl SteppedWhisker {
             let third = slid.map_or(at[2] - start[2], |slid| state.slid - slid);
             [state.pole[0] - wanted[0], state.pole[1] - wanted[1], third]
         };
-        // The force ratio changes by much with a small slid distance: the iteration ends when steps no longer help.
-        let mut last = f64::INFINITY;
-        for _ in 0..30 {
-            let here = miss(at);
+        let derivatives = |at: Loaded| {
             let mut columns = [[0.0; 3]; 3];
             for (i, column) in columns.iter_mut().enumerate() {
                 let step = 1e-5 * (1.0 + at[i].abs());
@@ -118,10 +115,21 @@ impl SteppedWhisker {
                 let [more, less] = [miss(more), miss(less)];
                 *column = std::array::from_fn(|k| (more[k] - less[k]) / (2.0 * step));
             }
-            let det = |[a, b, c]: [[f64; 3]; 3]| {
-                a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
-                    + a[2] * (b[0] * c[1] - b[1] * c[0])
-            };
+            columns
+        };
+        let det = |[a, b, c]: [[f64; 3]; 3]| {
+            a[0] * (b[1] * c[2] - b[2] * c[1]) - a[1] * (b[0] * c[2] - b[2] * c[0])
+                + a[2] * (b[0] * c[1] - b[1] * c[0])
+        };
+        let mut columns = derivatives(at);
+        // The force ratio changes by much with a small slid distance: the iteration ends when steps no longer help.
+        let mut last = f64::INFINITY;
+        for _ in 0..30 {
+            // Small steps take the derivatives of the steps before.
+            if last > 1e-4 && last.is_finite() {
+                columns = derivatives(at);
+            }
+            let here = miss(at);
             let whole = det(columns);
             let step: Loaded = std::array::from_fn(|i| {
                 let mut replaced = columns;
