@@ -200,7 +200,7 @@ impl TogetherSearch<'_> {
 
     /// Returns true if the targets do not determine the varied numbers at a solution.
     fn is_singular(&self, x: &[f64]) -> bool {
-        let Some(columns) = self.jacobian(x, &[]) else {
+        let Some(columns) = self.jacobian(x, &Vec::new()) else {
             return false;
         };
         let svd = Svd::new(columns);
@@ -226,6 +226,8 @@ impl TogetherSearch<'_> {
 }
 
 impl BoundedProblem for TogetherSearch<'_> {
+    type Place = Vec<f64>;
+
     fn count(&self) -> usize {
         self.targets.len()
     }
@@ -234,7 +236,7 @@ impl BoundedProblem for TogetherSearch<'_> {
         self.misses(x, exactly)
     }
 
-    fn jacobian(&self, x: &[f64], _residuals: &[f64]) -> Option<Vec<Vec<f64>>> {
+    fn jacobian(&self, x: &[f64], _: &Vec<f64>) -> Option<Vec<Vec<f64>>> {
         let scene = self.at(x)?;
         let directions = self.scene.directions(&scene);
         let by_differences = LazyCell::new(|| differences(|x| self.residuals(x), x, STEP));

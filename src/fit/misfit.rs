@@ -2,8 +2,8 @@
 
 use super::FitLoss;
 use crate::least_squares::{BoundedProblem, differences};
-use crate::measured::MeasuredPoints;
-use crate::scene::{Parameter, Scene, SceneError};
+use crate::measured::{MeasuredPoints, Residuals};
+use crate::scene::{Parameter, Scene, SceneError, SweptWhisker};
 use crate::sensitivity::Variable;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -71,43 +71,16 @@ impl<'a> Misfit<'a> {
         self.scene.with_parameters(&values)
     }
 
-    /// Returns the scene with these `parameters`; `None` where it is refused, and after a cancellation.
-    fn accepted(&self, parameters: &[f64]) -> Option<Scene> {
+    /// Returns the whiskers of the points with these `parameters`; `None` where the scene refuses them, and after a cancellation.
+    fn whiskers(&self, parameters: &[f64]) -> Option<Vec<SweptWhisker>> {
         let scene = (!self.is_cancelled()).then(|| self.scene(parameters).ok());
-        scene.flatten()
+        self.points.whiskers_in(&*scene.flatten()?).ok()
     }
 
-    /// Returns predicted less measured angles over their standard deviations, dimensionless: `[point]`. `None` where the scene refuses
-    /// the parameters, or a point is out of reach or never detaches.
-    pub fn residuals_at(&self, parameters: &[f64]) -> Option<Vec<f64>> {
-        let scene = self.accepted(parameters)?;
-        let whiskers = self.points.whiskers_in(&scene).ok()?;
-        self.points.check_reach_of(&whiskers).ok()?;
-        let rows = self.points.compared_with(&whiskers);
-        let mut residuals = Vec::with_capacity(rows.len());
-        for (row, point) in rows.iter().zip(&self.points.points) {
-            residuals.push(-row.residual_deg? / point.sd_deg);
-        }
-        Some(residuals)
-    }
-
-    /// Returns true if a point detaches in another way with these `parameters` than was measured.
-    pub fn has_other_kinds(&self, parameters: &[f64]) -> bool {
-        let scene = self.scene(parameters).ok();
-        let whiskers = scene.and_then(|scene| self.points.whiskers_in(&scene).ok());
-        whiskers.is_some_and(|whiskers| self.points.beside_all(&whiskers).of_another_kind() > 0)
-    }
-
-    /// Returns the derivative of each point's residual by each scaled parameter, `[parameter][point]`. All are exact, or all are differences
-    /// if a point has no exact one, as at first touch. `None` where the scene refuses the parameters on both sides.
-    pub fn jacobian(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
-        self.derivatives(parameters)
-            .or_else(|| differences(|x| self.residuals_at(x), parameters, STEP))
-    }
-
-    /// Returns the exact columns of the Jacobian; `None` where the scene refuses the parameters, or an end has no derivative.
-    fn derivatives(&self, parameters: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let whiskers = self.points.whiskers_in(&*self.accepted(parameters)?).ok()?;
+    /// Returns the residuals at these `parameters`, with their exact derivatives. `None` where the scene refuses the parameters, or a point is out of
+    /// reach or never detaches.
+    pub fn place(&self, parameters: &[f64]) -> Option<MisfitPlace> {
+        let whiskers = self.whiskers(parameters)?;
         let free = self.free.iter().map(|parameter| Variable::from(*parameter));
         let mut variables: Vec<Variable> = free.collect();
         // With a free taper, the radius at the tip follows the radius at the base.
@@ -116,38 +89,69 @@ impl<'a> Misfit<'a> {
         let base = self.free.iter().position(|free| *free == Parameter::BaseRadiusUm);
         let base = base.filter(|_| has_taper);
         variables.extend(base.map(|_| Variable::from(Parameter::TipRadiusUm)));
-        let mut columns = self.points.derivatives_with(&whiskers, &variables)?;
-        if let Some(base) = base
-            && let Some(by_tip) = columns.pop()
-        {
-            let both = columns[base].iter_mut().zip(by_tip);
-            both.for_each(|(by_base, by_tip)| *by_base += tip_by_base * by_tip);
-        }
-        for (column, unit) in columns.iter_mut().zip(&self.units) {
-            for (derivative, point) in column.iter_mut().zip(&self.points.points) {
-                *derivative *= unit / point.sd_deg;
+        let Residuals { values: residuals, by } = self.points.residuals(&whiskers, &variables)?;
+        let exact = by.map(|mut columns| {
+            if let Some(base) = base
+                && let Some(by_tip) = columns.pop()
+            {
+                let both = columns[base].iter_mut().zip(by_tip);
+                both.for_each(|(by_base, by_tip)| *by_base += tip_by_base * by_tip);
             }
-        }
-        Some(columns)
+            for (column, unit) in columns.iter_mut().zip(&self.units) {
+                column.iter_mut().for_each(|derivative| *derivative *= unit);
+            }
+            columns
+        });
+        let roots = residuals.iter().map(|residual| self.loss.root(*residual)).collect();
+        Some(MisfitPlace { residuals, roots, exact })
+    }
+
+    /// Returns true if a point detaches in another way with these `parameters` than was measured.
+    pub fn has_other_kinds(&self, parameters: &[f64]) -> bool {
+        let whiskers = self.whiskers(parameters);
+        whiskers.is_some_and(|whiskers| self.points.beside_all(&whiskers).of_another_kind() > 0)
+    }
+
+    /// Returns the derivative of each point's residual at `place`, which is that of `parameters`, by each scaled parameter: `[parameter][point]`. All are
+    /// exact, or all are differences if a point has no exact one, as at first touch. `None` where the scene refuses the parameters on both sides.
+    pub fn jacobian(&self, parameters: &[f64], place: &MisfitPlace) -> Option<Vec<Vec<f64>>> {
+        let residuals = |x: &[f64]| Some(self.points.residuals(&self.whiskers(x)?, &[])?.values);
+        place.exact.clone().or_else(|| differences(residuals, parameters, STEP))
+    }
+}
+
+/// Residuals of points at a place of a [`Misfit`], predicted less measured angles over their standard deviations.
+pub(super) struct MisfitPlace {
+    /// Residuals, dimensionless: `[point]`.
+    pub residuals: Vec<f64>,
+    /// Signed roots of the losses of the residuals: `[point]`.
+    roots: Vec<f64>,
+    /// Exact derivatives of the residuals by each scaled parameter, `[parameter][point]`; `None` if one does not exist.
+    exact: Option<Vec<Vec<f64>>>,
+}
+
+impl AsRef<[f64]> for MisfitPlace {
+    fn as_ref(&self) -> &[f64] {
+        &self.roots
     }
 }
 
 /// The residuals of the problem are the signed roots of the losses.
 impl BoundedProblem for Misfit<'_> {
+    type Place = MisfitPlace;
+
     fn count(&self) -> usize {
         self.points.points.len()
     }
 
-    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
-        let mut roots = self.residuals_at(x)?;
-        roots.iter_mut().for_each(|r| *r = self.loss.root(*r));
-        Some(roots)
+    fn residuals(&self, x: &[f64]) -> Option<MisfitPlace> {
+        self.place(x)
     }
 
-    fn jacobian(&self, x: &[f64], roots: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let mut columns = Misfit::jacobian(self, x)?;
+    fn jacobian(&self, x: &[f64], place: &MisfitPlace) -> Option<Vec<Vec<f64>>> {
+        let mut columns = Misfit::jacobian(self, x, place)?;
         for column in &mut columns {
-            let slopes = column.iter_mut().zip(roots);
+            let slopes = column.iter_mut().zip(&place.roots);
             slopes.for_each(|(derivative, root)| *derivative *= self.loss.root_slope(*root));
         }
         Some(columns)

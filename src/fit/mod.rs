@@ -223,7 +223,7 @@ pub fn fit_until(
     check(scene, free)?;
     let (start, moved) = within_reach(scene, points, free)?;
     let scene = &start;
-    let used = used(scene, points)?;
+    let used = points.detaching(&points.whiskers_in(scene)?);
     if used.points.len() < free.len() {
         return Err(FitError::TooFew {
             origin: points.origin.clone(),
@@ -234,9 +234,11 @@ pub fn fit_until(
     let misfit = Misfit::new(scene, &used, free, loss, cancel);
     let best = best(&misfit)?;
     let fitted = misfit.scene(&best)?;
-    let here = misfit.residuals_at(&best);
-    let (here, mut jacobian) =
-        here.zip(misfit.jacobian(&best)).ok_or(FitError::NotConverged(NO_JACOBIAN))?;
+    let place = misfit.place(&best).and_then(|place| {
+        let jacobian = misfit.jacobian(&best, &place)?;
+        Some((place.residuals, jacobian))
+    });
+    let (here, mut jacobian) = place.ok_or(FitError::NotConverged(NO_JACOBIAN))?;
     let ranges = misfit.ranges(&fitted);
     let is_at_limit = |i: usize| ranges[i].contains(&best[i]);
     // The limit determines such a parameter, not the points.
@@ -334,16 +336,4 @@ fn rms_deg(loss: FitLoss, residuals: &[f64], used: &MeasuredPoints) -> Option<f6
         [squares + weight * (r * point.sd_deg).powi(2), weights + weight]
     });
     (weights > 0.0).then(|| (squares / weights).sqrt())
-}
-
-/// The points that detach at the values of `scene`.
-fn used(scene: &Scene, points: &MeasuredPoints) -> Result<MeasuredPoints, CsvError> {
-    let rows = points.compared_with(&points.whiskers_in(scene)?);
-    let detaching = points.points.iter().zip(rows);
-    let detaching = detaching.filter(|(_, row)| row.residual_deg.is_some());
-    Ok(MeasuredPoints {
-        points: detaching.map(|(point, _)| *point).collect(),
-        incomplete: Vec::new(),
-        ..points.clone()
-    })
 }

@@ -11,17 +11,36 @@ pub const FAINT: f64 = 1e-6;
 
 /// Residuals as a function of parameters with limits.
 pub trait BoundedProblem {
+    /// Residuals at some parameters, `[residual]`, alone or with what else the Jacobian there needs.
+    type Place: AsRef<[f64]>;
+
     /// Number of residuals.
     fn count(&self) -> usize;
 
-    /// Returns the residuals at the parameters `x`, `[residual]`; `None` where there are none.
-    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>>;
+    /// Returns the residuals at the parameters `x`; `None` where there are none.
+    fn residuals(&self, x: &[f64]) -> Option<Self::Place>;
 
-    /// Returns the columns of the Jacobian at `x`, where the residuals are `residuals`: `[parameter][residual]`.
-    fn jacobian(&self, x: &[f64], residuals: &[f64]) -> Option<Vec<Vec<f64>>>;
+    /// Returns the columns of the Jacobian at `x`, where the residuals are `place`: `[parameter][residual]`.
+    fn jacobian(&self, x: &[f64], place: &Self::Place) -> Option<Vec<Vec<f64>>>;
 
     /// Returns the range `[least, greatest]` of each parameter with the others as in `x`: `[parameter]`.
     fn ranges(&self, x: &[f64]) -> Vec<[f64; 2]>;
+}
+
+/// Place of a search.
+enum SearchPlace<P> {
+    Known(P),
+    /// The problem has no residuals there, but for [`REFUSED`] ones: `[residual]`.
+    Refused(Vec<f64>),
+}
+
+impl<P: AsRef<[f64]>> AsRef<[f64]> for SearchPlace<P> {
+    fn as_ref(&self) -> &[f64] {
+        match self {
+            Self::Known(place) => place.as_ref(),
+            Self::Refused(residuals) => residuals,
+        }
+    }
 }
 
 /// Returns the parameters at the minimum of the sum of squares to which a search from `start` leads, and the sum there.
@@ -32,8 +51,8 @@ pub trait BoundedProblem {
 ///
 /// # Errors
 /// The reason why the iteration ends before it converges; `no_jacobian` if a Jacobian is missing.
-pub fn search(
-    problem: &impl BoundedProblem,
+pub fn search<P: AsRef<[f64]>>(
+    problem: &impl BoundedProblem<Place = P>,
     start: &[f64],
     tolerance: f64,
     no_jacobian: &'static str,
@@ -46,15 +65,19 @@ pub fn search(
             pairs.map(|(x, [least, most])| x.clamp(*least, *most)).collect()
         };
         let residuals = |x: &[f64]| {
-            let refused = || vec![REFUSED; problem.count()];
-            problem.residuals(&inside(x)).unwrap_or_else(refused)
+            let refused = || SearchPlace::Refused(vec![REFUSED; problem.count()]);
+            problem.residuals(&inside(x)).map_or_else(refused, SearchPlace::Known)
         };
         // The columns of parameters that are beyond a limit, or would go there, are 0.
-        let jacobian = |x: &[f64], residuals: &Vec<f64>| {
-            let mut columns = problem.jacobian(&inside(x), residuals).ok_or(no_jacobian)?;
+        let jacobian = |x: &[f64], place: &SearchPlace<P>| {
+            let columns = match place {
+                SearchPlace::Known(place) => problem.jacobian(&inside(x), place),
+                SearchPlace::Refused(_) => None,
+            };
+            let mut columns = columns.ok_or(no_jacobian)?;
             clear_faint(&mut columns);
             for ((column, [least, most]), x) in columns.iter_mut().zip(&ranges).zip(x) {
-                let growth = dot(column, residuals);
+                let growth = dot(column, place.as_ref());
                 let is_held = x < least
                     || x > most
                     || x == least && growth > 0.0
@@ -118,6 +141,8 @@ mod tests {
     struct Sum;
 
     impl BoundedProblem for Sum {
+        type Place = Vec<f64>;
+
         fn count(&self) -> usize {
             8
         }
@@ -131,7 +156,7 @@ mod tests {
             Some((0..self.count()).map(residual).collect())
         }
 
-        fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
+        fn jacobian(&self, x: &[f64], _: &Vec<f64>) -> Option<Vec<Vec<f64>>> {
             let rounding = |i: usize| 1e-12 * libm::cos(1e9 * x[0] + i as f64);
             let by_sum = |i: usize| 1.0 + i as f64;
             let other = |i: usize| libm::sin(1.0 + i as f64);

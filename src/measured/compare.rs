@@ -1,11 +1,11 @@
 //! Comparison of measured points with theory.
 
-use super::{MeasuredAngle, MeasuredPoint, MeasuredPoints};
+use super::{MeasuredPoint, MeasuredPoints};
 use crate::input::shortened;
 use crate::scene::{Pole, Whisker, digits};
-use crate::sensitivity::{Derivatives, Variable, detachments_of};
+use crate::sensitivity::{DetachmentDerivatives, Variable, detachments_of};
 use crate::trace::row;
-use crate::trace::{Detachment, DetachmentKind, EndDetail, PushedWhisker, ends_at};
+use crate::trace::{DetachmentKind, EndDetail, PushedWhisker};
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -98,7 +98,7 @@ impl MeasuredPoints {
     /// Compares the points with the detachments of `whisker` at `pole`. Rows of points with a missing value have no prediction.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
-        self.with_incomplete(self.compared(whisker, pole))
+        self.with_incomplete(self.compared(&[(whisker, pole)]))
     }
 
     /// Returns compared points together with those that have a missing value, in the order of the file.
@@ -121,17 +121,10 @@ impl MeasuredPoints {
         Comparison { rows }
     }
 
-    /// Returns the points that have all of their values, with their predictions for `whisker` at `pole`: `[point]`.
-    pub(crate) fn compared(&self, whisker: &Whisker, pole: &Pole) -> Vec<ComparedPoint> {
-        let ends = Side::BOTH.map(|side| self.ends(whisker, pole, side));
-        let compared = |point: &MeasuredPoint| {
-            let ends = &ends[usize::from(point.side == Side::Cb)];
-            let place = ends.partition_point(|end| end.distance_mm < point.distance_mm);
-            let end = &ends[place];
-            let predicted_deg = match self.angle {
-                MeasuredAngle::Push => end.push_angle_deg,
-                MeasuredAngle::Chord => end.push_chord_deg,
-            };
+    /// Returns the points that have all of their values, each with the prediction for its own one of `whiskers`: `[point]`.
+    pub(super) fn compared(&self, whiskers: &[(&Whisker, &Pole)]) -> Vec<ComparedPoint> {
+        let compared = |(point, DetachmentDerivatives { end, .. }): (&MeasuredPoint, _)| {
+            let predicted_deg = self.angle.of_end(&end);
             ComparedPoint {
                 line: point.line,
                 side: point.side,
@@ -148,53 +141,37 @@ impl MeasuredPoints {
                 },
             }
         };
-        self.points.iter().map(compared).collect()
+        self.points.iter().zip(self.predicted(whiskers, &[])).map(compared).collect()
     }
 
-    /// Returns the derivatives of the predicted angles by each of `variables`, in degrees per unit of the variable, `[variable][point]`.
-    /// `None` if one of the derivatives does not exist.
-    #[must_use]
-    pub fn derivatives(
+    /// Returns the predicted detachments of the points that have all of their values, each for the point's own one of `whiskers`, with derivatives by
+    /// `variables`: `[point]`.
+    pub(crate) fn predicted(
         &self,
-        whisker: &Whisker,
-        pole: &Pole,
+        whiskers: &[(&Whisker, &Pole)],
         variables: &[Variable],
-    ) -> Option<Vec<Vec<f64>>> {
-        let ends = Side::BOTH.map(|side| {
-            let pushed = PushedWhisker { whisker, pole, side, distances_mm: &self.distances(side) };
-            let detail = EndDetail::State;
-            detachments_of(Resolution::FINE, &[pushed], detail, variables).concat()
+    ) -> Vec<DetachmentDerivatives> {
+        let order = |a: &MeasuredPoint, b: &MeasuredPoint| {
+            let sides = a.side.sign().total_cmp(&b.side.sign());
+            a.whisker.cmp(&b.whisker).then(sides).then(a.distance_mm.total_cmp(&b.distance_mm))
+        };
+        let mut places = self.points.clone();
+        places.sort_by(order);
+        places.dedup_by(|a, b| order(a, b).is_eq());
+        let sides: Vec<&[MeasuredPoint]> =
+            places.chunk_by(|a, b| a.whisker == b.whisker && a.side == b.side).collect();
+        let distances = sides.iter().map(|of_side| of_side.iter().map(|place| place.distance_mm));
+        let distances: Vec<Vec<f64>> = distances.map(Iterator::collect).collect();
+        let pushed = sides.iter().zip(&distances).map(|(of_side, distances_mm)| {
+            let MeasuredPoint { whisker, side, .. } = of_side[0];
+            let (whisker, pole) = whiskers[whisker];
+            PushedWhisker { whisker, pole, side, distances_mm }
         });
-        let angle = |by: &Derivatives| match self.angle {
-            MeasuredAngle::Push => by.push_angle_deg,
-            MeasuredAngle::Chord => by.push_chord_deg,
-        };
-        let of_point = |point: &MeasuredPoint, variable: usize| {
-            let ends = &ends[usize::from(point.side == Side::Cb)];
-            let place =
-                ends.partition_point(|derivatives| derivatives.end.distance_mm < point.distance_mm);
-            ends[place].by[variable].as_ref().ok().map(angle)
-        };
-        let of_variable = |variable: usize| {
-            let points = self.points.iter();
-            points.map(|point| of_point(point, variable)).collect()
-        };
-        (0..variables.len()).map(of_variable).collect()
-    }
-
-    /// The predicted detachments on `side`, in growing order of the distances, each distance once.
-    fn ends(&self, whisker: &Whisker, pole: &Pole, side: Side) -> Vec<Detachment> {
-        let distances = self.distances(side);
-        ends_at(Resolution::FINE, whisker, pole, side, &distances)
-    }
-
-    /// The distances of the points on `side` in growing order, in mm, each once.
-    fn distances(&self, side: Side) -> Vec<f64> {
-        let points = self.points.iter().filter(|point| point.side == side);
-        let mut distances: Vec<f64> = points.map(|point| point.distance_mm).collect();
-        distances.sort_by(f64::total_cmp);
-        distances.dedup();
-        distances
+        let pushed: Vec<PushedWhisker> = pushed.collect();
+        let ends = detachments_of(Resolution::FINE, &pushed, EndDetail::State, variables).concat();
+        let of_point =
+            |point| ends[places.partition_point(|place| order(place, point).is_lt())].clone();
+        self.points.iter().map(of_point).collect()
     }
 }
 

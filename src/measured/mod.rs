@@ -7,8 +7,12 @@ mod together;
 mod whiskers;
 
 pub use compare::{ComparedPoint, Comparison, NotCompared};
+#[cfg(feature = "fit")]
+pub(crate) use together::Residuals;
 
-use crate::trace::DetachmentKind;
+#[cfg(feature = "fit")]
+use crate::sensitivity::Derivatives;
+use crate::trace::{Detachment, DetachmentKind};
 use whiskmap_mechanics::rod::Side;
 
 /// Measured detachments, in the order of their file. Every value is in its range.
@@ -65,6 +69,23 @@ impl MeasuredAngle {
         match self {
             Self::Push => "push_angle_deg",
             Self::Chord => "push_chord_deg",
+        }
+    }
+
+    /// Returns the derivative of this angle, in degrees per unit of the variable.
+    #[cfg(feature = "fit")]
+    const fn of_derivatives(self, by: &Derivatives) -> f64 {
+        match self {
+            Self::Push => by.push_angle_deg,
+            Self::Chord => by.push_chord_deg,
+        }
+    }
+
+    /// Returns this angle of a predicted detachment, in degrees; `None` without a detachment.
+    const fn of_end(self, end: &Detachment) -> Option<f64> {
+        match self {
+            Self::Push => end.push_angle_deg,
+            Self::Chord => end.push_chord_deg,
         }
     }
 }

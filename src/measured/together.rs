@@ -1,10 +1,9 @@
 //! Points of several whiskers together, each compared with its own whisker, as fits do.
 
-use super::{ComparedPoint, Comparison, MeasuredPoint, MeasuredPoints};
+use super::{Comparison, MeasuredPoint, MeasuredPoints};
 use crate::input::{CsvError, did_you_mean, shortened};
-use crate::scene::{SceneData, SweptWhisker};
-use crate::sensitivity::Variable;
-use rayon::prelude::*;
+use crate::scene::{Pole, SceneData, SweptWhisker, Whisker};
+use crate::sensitivity::{DetachmentDerivatives, Variable};
 
 impl MeasuredPoints {
     /// Returns the whisker of `scene` for each name of the points, `[whisker]`; without names, the first whisker of the scene.
@@ -64,40 +63,55 @@ impl MeasuredPoints {
 
     /// Compares the points with the detachments of their `whiskers`, as [`Self::beside`] does.
     pub(crate) fn beside_all(&self, whiskers: &[SweptWhisker]) -> Comparison {
-        self.with_incomplete(self.compared_with(whiskers))
+        self.with_incomplete(self.compared(&with_poles(whiskers)))
     }
 
-    /// Returns the points that have all of their values, with the predictions for their `whiskers`: `[point]`.
-    pub(crate) fn compared_with(&self, whiskers: &[SweptWhisker]) -> Vec<ComparedPoint> {
-        let compared = whiskers.par_iter().enumerate().map(|(index, swept)| {
-            let points = self.of_whisker(index);
-            points.compared(&swept.whisker, &swept.pole)
-        });
-        self.in_order(compared.collect())
+    /// Returns the points that detach by the theory of their `whiskers`.
+    pub(crate) fn detaching(&self, whiskers: &[SweptWhisker]) -> Self {
+        let pairs = self.points.iter().zip(self.compared(&with_poles(whiskers)));
+        let detaching = pairs.filter(|(_, row)| row.residual_deg.is_some());
+        Self {
+            points: detaching.map(|(point, _)| *point).collect(),
+            incomplete: Vec::new(),
+            ..self.clone()
+        }
     }
 
-    /// Returns the derivatives of the predicted angles as [`Self::derivatives`] does, each for the point's own whisker.
-    pub(crate) fn derivatives_with(
+    /// Returns the residuals of the points, and their derivatives by each of `variables`. `None` where a point is out of reach or never detaches.
+    pub(crate) fn residuals(
         &self,
         whiskers: &[SweptWhisker],
         variables: &[Variable],
-    ) -> Option<Vec<Vec<f64>>> {
-        let derivatives = whiskers.par_iter().enumerate().map(|(index, swept)| {
-            let points = self.of_whisker(index);
-            points.derivatives(&swept.whisker, &swept.pole, variables)
-        });
-        let derivatives: Vec<Vec<Vec<f64>>> = derivatives.collect::<Option<_>>()?;
-        let of_variable = |variable: usize| {
-            let values = derivatives.iter().map(|of_whisker| of_whisker[variable].clone());
-            self.in_order(values.collect())
+    ) -> Option<Residuals> {
+        self.check_reach_of(whiskers).ok()?;
+        let predicted = self.predicted(&with_poles(whiskers), variables);
+        let pairs = || self.points.iter().zip(&predicted);
+        let residual = |(point, predicted): (&MeasuredPoint, &DetachmentDerivatives)| {
+            Some((self.angle.of_end(&predicted.end)? - point.angle_deg) / point.sd_deg)
         };
-        Some((0..variables.len()).map(of_variable).collect())
+        let of_variable = |variable: usize| {
+            let by = pairs().map(|(point, predicted)| {
+                let by = predicted.by[variable].as_ref().ok()?;
+                Some(self.angle.of_derivatives(by) / point.sd_deg)
+            });
+            by.collect()
+        };
+        Some(Residuals {
+            values: pairs().map(residual).collect::<Option<_>>()?,
+            by: (0..variables.len()).map(of_variable).collect(),
+        })
     }
+}
 
-    /// Returns values of the points of each whisker, `[whisker][point]`, in the order of all points: `[point]`.
-    fn in_order<T>(&self, values: Vec<Vec<T>>) -> Vec<T> {
-        let mut values: Vec<_> = values.into_iter().map(Vec::into_iter).collect();
-        let points = self.points.iter();
-        points.filter_map(|point| values[point.whisker].next()).collect()
-    }
+/// Predicted less measured angles over their standard deviations, dimensionless.
+pub(crate) struct Residuals {
+    /// Residual of each point, `[point]`.
+    pub values: Vec<f64>,
+    /// Derivatives of the residuals per unit of each variable, `[variable][point]`. `None` if one of them does not exist.
+    pub by: Option<Vec<Vec<f64>>>,
+}
+
+/// Returns the swept whiskers with their poles: `[whisker]`.
+fn with_poles(whiskers: &[SweptWhisker]) -> Vec<(&Whisker, &Pole)> {
+    whiskers.iter().map(|swept| (&swept.whisker, &swept.pole)).collect()
 }

@@ -286,6 +286,8 @@ impl FrameProblem<'_> {
 }
 
 impl BoundedProblem for FrameProblem<'_> {
+    type Place = Vec<f64>;
+
     fn count(&self) -> usize {
         self.frame.points.len() + 1 + usize::from(self.is_at_pole)
     }
@@ -298,7 +300,7 @@ impl BoundedProblem for FrameProblem<'_> {
         residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
     }
 
-    fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
+    fn jacobian(&self, x: &[f64], _: &Vec<f64>) -> Option<Vec<Vec<f64>>> {
         if self.cancel.load(Ordering::Relaxed) {
             return None;
         }

@@ -120,6 +120,8 @@ struct CommonProblem<F> {
 }
 
 impl<F: Fn(&[f64]) -> Option<Vec<f64>>> BoundedProblem for CommonProblem<F> {
+    type Place = Vec<f64>;
+
     fn count(&self) -> usize {
         self.count
     }
@@ -129,7 +131,7 @@ impl<F: Fn(&[f64]) -> Option<Vec<f64>>> BoundedProblem for CommonProblem<F> {
     }
 
     /// Differences inside the range.
-    fn jacobian(&self, x: &[f64], _: &[f64]) -> Option<Vec<Vec<f64>>> {
+    fn jacobian(&self, x: &[f64], _: &Vec<f64>) -> Option<Vec<Vec<f64>>> {
         let [least, most] = self.range;
         let column = |i: usize| {
             let ends = [x[i] - DIFFERENCE, x[i] + DIFFERENCE].map(|end| end.clamp(least, most));
@@ -196,7 +198,7 @@ impl CommonRest {
     }
 
     /// Returns the search for the coefficients.
-    fn problem(frames: &[&RodFrame], cancel: &AtomicBool) -> impl BoundedProblem {
+    fn problem(frames: &[&RodFrame], cancel: &AtomicBool) -> impl BoundedProblem<Place = Vec<f64>> {
         CommonProblem {
             residuals: |x: &[f64]| {
                 let whisker = TrackedRod::new(0.0, polynomial(x), 1.0);
@@ -212,7 +214,7 @@ impl CommonRest {
         let problem = Self::problem(frames, cancel);
         let left = self.left(frames.len()).max(1);
         Some(RestScatter {
-            slopes: Svd::new(problem.jacobian(&self.coefficients, &[])?),
+            slopes: Svd::new(problem.jacobian(&self.coefficients, &Vec::new())?),
             rms: (self.mean_square * self.count as f64 / left as f64).sqrt(),
         })
     }
@@ -320,14 +322,14 @@ impl CommonTaper {
         };
         let found = search(&problem, &[TYPICAL_TAPER], TOLERANCE, "a frame has no fit");
         let (x, sum) = found.ok()?;
-        let slopes = problem.jacobian(&x, &[])?.swap_remove(0);
+        let slopes = problem.jacobian(&x, &Vec::new())?.swap_remove(0);
         let at_rest = CommonProblem {
             residuals: |coefficients: &[f64]| of_rod(x[0], coefficients),
             count,
             range: [f64::NEG_INFINITY, f64::INFINITY],
         };
         // The taper at which the sum of squares is least follows the coefficients (implicit function theorem).
-        let by_coefficients = at_rest.jacobian(coefficients, &[])?;
+        let by_coefficients = at_rest.jacobian(coefficients, &Vec::new())?;
         let gradient = by_coefficients.iter().map(|by| -dot(&slopes, by) / dot(&slopes, &slopes));
         let of_rest = scatter.deviation(&gradient.collect::<Vec<_>>());
         // Each frame has five unknowns.
