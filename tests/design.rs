@@ -487,6 +487,8 @@ fn designs_with_other_counts_and_numbers_are_refused() {
     assert_eq!(why(&[TAPER, BASE], &[slip_off, other]), counts(2, 1));
     let twice = why(&[TAPER, tip], &[slip_off, moment]);
     assert_eq!(twice, DesignError::Twice(TAPER, tip));
+    let twice = why(&[TAPER, TAPER], &[slip_off, moment]);
+    assert_eq!(twice.to_string(), "taper: is given twice");
     assert_eq!(
         why(&[Variable::PushAngleDeg], &[slip_off]).to_string(),
         "push_angle_deg: must be a parameter of the scene, or distance_mm"

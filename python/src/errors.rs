@@ -80,7 +80,11 @@ pub fn of_store(why: &StoreError) -> PyErr {
 pub fn of_io(path: &Path, cause: &io::Error) -> PyErr {
     let shown = path.to_string_lossy().into_owned();
     match cause.raw_os_error() {
-        Some(code) => PyOSError::new_err((code, cause.to_string(), shown)),
+        Some(code) => {
+            // Python writes the number itself.
+            let text = cause.to_string().replace(&format!(" (os error {code})"), "");
+            PyOSError::new_err((code, text, shown))
+        }
         None => PyOSError::new_err(format!("{shown}: {cause}")),
     }
 }

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 from conftest import ROOT
 from scipy.optimize import least_squares
 
@@ -26,6 +27,27 @@ def test_arguments_broadcast(cone):
     assert wm.detachment(cone, distance_mm=np.zeros((0, 3))).kind.shape == (0, 3, 2)
     # An array of one value has one dimension.
     assert wm.detachment(cone, distance_mm=[15.0], taper=[0.5], side="cb").kind.shape == (1,)
+
+
+def test_elements_with_nan_are_no_whisker_however_many(cone):
+    for arguments in (dict(distance_mm=[np.nan]), dict(distance_mm=np.nan), dict(distance_mm=15, taper=[np.nan]), dict(distance_mm=[np.nan] * 2)):
+        end = wm.detachment(cone, side="cb", jac=True, **arguments)
+        assert (end.kind == "no-whisker").all() and np.isnan(end.push_angle_deg).all()
+        assert len(end.refused) == end.kind.size and set(end.refused.values()) <= {"distance_mm is missing", "taper is missing"}
+        with pytest.raises(ValueError, match="must be finite"):
+            wm.detachment(cone, side="cb", strict=True, **arguments)
+
+
+def test_labels_must_match_place_by_place(cone):
+    distances = xr.DataArray([15.0, 16.0], dims="distance")
+    with pytest.raises(ValueError, match="taper: has the dimension taper where distance_mm has distance"):
+        wm.detachment(cone, distance_mm=distances, taper=xr.DataArray([0.5, 0.6], dims="taper"), side="cb")
+    series = pd.Series([15.0, 16.0], index=["C1", "C2"])
+    with pytest.raises(ValueError, match="taper: has other labels than distance_mm"):
+        wm.detachment(cone, distance_mm=series, taper=pd.Series([0.6, 0.5], index=["C2", "C1"]), side="cb")
+    matching = wm.detachment(cone, distance_mm=series, taper=pd.Series([0.5, 0.6], index=["C1", "C2"]), side="cb")
+    plain = wm.detachment(cone, distance_mm=[15.0, 16.0], taper=[0.5, 0.6], side="cb")
+    np.testing.assert_array_equal(matching.push_angle_deg, plain.push_angle_deg)
 
 
 def test_rows_of_any_order_are_those_of_the_curve(cone):

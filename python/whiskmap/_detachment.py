@@ -96,7 +96,7 @@ def detachment(
     threads: int | None = None,
     **parameters: ArrayLike,
 ) -> Detachment:
-    """Compute where whiskers detach. All arrays broadcast against each other.
+    """Compute where whiskers detach. All arrays broadcast against each other by place, as in numpy.
 
     Parameters
     ----------
@@ -131,7 +131,8 @@ def detachment(
     SceneError
         If a value of all elements is out of its range, or with `strict` of one: the message names the argument, the index and the value.
     ValueError
-        If the arguments do not broadcast, or a value is infinite, or with `strict` NaN.
+        If the arguments do not broadcast, or a value is infinite, or with `strict` NaN. If arrays of xarray or series of pandas have other
+        dimensions or labels at the same places.
 
     Examples
     --------
@@ -159,8 +160,9 @@ def detachment(
         if PARAMETERS.get(name) != name:
             raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{resembling(name)}")
         arrays[name] = real_array(name, values)
+    _check_labels({"distance_mm": distance_mm, **parameters, "side": side})
     for name, array in arrays.items():
-        is_allowed = np.isfinite(array) if strict or array.size == 1 else ~np.isinf(array)
+        is_allowed = np.isfinite(array) if strict else ~np.isinf(array)
         if not is_allowed.all():
             place = np.unravel_index(int(np.argmin(is_allowed)), array.shape)
             raise ValueError(f"{name}{list(map(int, place)) or ''} = {array[place]}: must be finite")
@@ -171,7 +173,8 @@ def detachment(
     if has_both:
         arrays = {name: array[..., None] for name, array in arrays.items()}
         shape += is_cb.shape
-    fixed = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
+    single = {name: float(array.flat[0]) for name, array in arrays.items() if name != "distance_mm" and array.size == 1}
+    fixed = {name: value for name, value in single.items() if not np.isnan(value)}
     flat = {name: np.broadcast_to(array, shape).ravel() for name, array in arrays.items() if name not in fixed}
     missing = {int(place): f"{name} is missing" for name, array in flat.items() for place in np.flatnonzero(np.isnan(array))}
     present = np.setdiff1d(np.arange(flat["distance_mm"].size), np.array(list(missing), dtype=np.intp))
@@ -209,6 +212,24 @@ def detachment(
         refused={tuple(map(int, np.unravel_index(own, shape))): reasons[own] for own in sorted(reasons)},
         **{name: full(values, np.nan) for name, values, _ in quantities},
     )
+
+
+def _check_labels(arguments: dict[str, Any]) -> None:
+    """Refuse arrays of xarray and series of pandas whose dimensions or labels differ at the same places."""
+    known: dict[int, tuple[str, Any, Any]] = {}
+    for name, values in arguments.items():
+        if hasattr(values, "indexes"):
+            axes = [(dimension, values.indexes.get(dimension)) for dimension in reversed(values.dims)]
+        else:
+            axes = [(None, values.index)] if hasattr(values, "reindex") else []
+        for place, (dimension, labels) in enumerate(axes):
+            other, its_dimension, its_labels = known.setdefault(place, (name, dimension, labels))
+            if dimension is not None and its_dimension is not None and dimension != its_dimension:
+                raise ValueError(
+                    f"{name}: has the dimension {dimension} where {other} has {its_dimension}: arrays broadcast by place; broadcast by xarray.broadcast"
+                )
+            if labels is not None and its_labels is not None and not labels.equals(its_labels):
+                raise ValueError(f"{name}: has other labels than {other}: arrays broadcast by place; align them, or give their values")
 
 
 def _variables(jac: bool | Sequence[str], given: tuple[str, ...]) -> tuple[str, ...]:

@@ -184,7 +184,7 @@ def shape(ds: xr.Dataset, *, ax: Axes | None = None, **line: Any) -> list[Artist
     """
     from matplotlib.patches import Circle
 
-    axes = _axes(ax)
+    axes, ds = _axes(ax), _of(ds, "shape", "x_mm")
     [whisker] = axes.plot(ds["x_mm"], ds["y_mm"], **{"color": inks()["slip-off"]} | line)
     centre = (ds.attrs["pole_x_mm"], ds.attrs["pole_y_mm"])
     pole = axes.add_patch(Circle(centre, ds.attrs["pole_radius_mm"], color=inks()["background"]))
@@ -309,8 +309,11 @@ def fit(found: Fit, *, ax: Axes | None = None, **line: Any) -> list[Artist]:
     list of matplotlib.artist.Artist
         The lines of the curve, then the points: slip-offs and points of unknown kind open, pull-offs filled.
     """
+    from whiskmap._fits import Fit
     from whiskmap._traces import curve as computed
 
+    if not isinstance(found, Fit):
+        raise TypeError(f"found: must be a result of fit, has the type {type(found).__name__}")
     axes, points = _axes(ax), found.points
     x = "push_chord_deg" if found.is_chord else "push_angle_deg"
     distances = points["distance_mm"].values

@@ -72,7 +72,7 @@ pub enum DesignError {
     #[error("{0}: must be a parameter of the scene, or distance_mm")]
     NotVaried(Variable),
     /// Two varied numbers are one number of the scene.
-    #[error("{0} and {1}: give one of them, because one determines the other")]
+    #[error("{}", given_twice(*.0, *.1))]
     Twice(Variable, Variable),
     /// The taper is to stay, but no radius varies, or the taper does.
     #[error("taper: it can be kept where base_radius_um or tip_radius_um varies alone")]
@@ -117,6 +117,15 @@ fn key(variable: Variable) -> String {
     match variable {
         Variable::Parameter(parameter) => parameter.key().to_owned(),
         variable => variable.name(),
+    }
+}
+
+/// Returns the message about two varied numbers that are one number of the scene.
+fn given_twice(one: Variable, other: Variable) -> String {
+    if one == other {
+        format!("{one}: is given twice")
+    } else {
+        format!("{one} and {other}: give one of them, because one determines the other")
     }
 }
 

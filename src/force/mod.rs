@@ -190,8 +190,16 @@ const MOST_OFF: f64 = 0.1;
 pub fn warnings(whisker: &Whisker, forces: &[FrameForce]) -> Vec<String> {
     let all = forces.len();
     let without = forces.iter().filter(|force| force.reason.is_some()).count();
-    let without = (without > 0)
-        .then(|| format!("{without} of {all} frames have no force, for the reasons in the table"));
+    let has_no_contact = forces.iter().all(|force| force.reason == Some(NoForce::Missing));
+    let without = (without > 0).then(|| {
+        let what = format!("{without} of {all} frames have no force");
+        match has_no_contact {
+            true => format!(
+                "{what}: each lacks a number, such as its contact, which an import without a pole does not find"
+            ),
+            false => format!("{what}, for the reasons in the table"),
+        }
+    });
     let most_mm = MOST_OFF * whisker.length_mm;
     let offs = forces.iter().filter_map(|force| force.contact_off_mm);
     let far: Vec<f64> = offs.filter(|off| *off > most_mm).collect();

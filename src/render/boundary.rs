@@ -9,8 +9,11 @@ const JUMP: f64 = 0.25;
 
 /// Returns the detachment boundary on both sides of the whisker, inside the axis: lines through points `[push angle (deg), distance
 /// (mm)]`, `[line][point]`. In each row and side, the whisker detaches at the push angle of the cell with the smallest margin, plus that
-/// margin away from 0.
+/// margin away from 0. There is no line across a single push angle.
 pub fn stretches(grid: &Grid, margin_deg: &ChannelValues) -> Vec<Vec<[f64; 2]>> {
+    if grid.push_angle_deg.len() < 2 {
+        return Vec::new();
+    }
     let [low, high] = CellAxis::new("", &grid.push_angle_deg).range();
     let mut stretches: Vec<Vec<[f64; 2]>> = Vec::new();
     for side in [-1.0, 1.0] {

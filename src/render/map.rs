@@ -13,7 +13,7 @@ use whiskmap_plot::{
 };
 
 /// Draws a map: codes with a legend, quantities with a colour bar. A map of several whiskers becomes a contact sheet with the first
-/// sweep axis to the right and the second upwards. A row of quantities becomes a line chart. All maps show the detachment boundary if
+/// sweep axis to the right and the second upwards. Quantities at one distance, or at one push angle, become a line chart. All maps show the detachment boundary if
 /// their margins are stored.
 ///
 /// # Errors

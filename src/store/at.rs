@@ -107,9 +107,9 @@ impl<'a> NamedAxis<'a> {
     }
 }
 
-/// Returns names of selected axes, and their values as text to four digits.
+/// Returns names of selected axes, and their values as text to six digits.
 pub(super) fn readable(chosen: &ChosenValues) -> impl Iterator<Item = (&'static str, String)> {
-    let text = |(name, value): &(_, Coordinate)| (*name, value.rounded(4).to_string());
+    let text = |(name, value): &(_, Coordinate)| (*name, value.rounded(6).to_string());
     chosen.iter().map(text)
 }
 

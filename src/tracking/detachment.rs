@@ -2,7 +2,9 @@
 
 use super::frame_curve::NearestPlace;
 use super::{Remarks, TrackedFrame};
+use crate::scene::{digits, rounded};
 use crate::trace::row;
+use glam::DVec2;
 use serde::Serialize;
 use whiskmap_mechanics::rod::Side;
 
@@ -20,9 +22,12 @@ row! {
     }
 }
 
+/// Largest way of the pole from first touch to detachment, as seen from the base, without a warning, in parts of its distance: 0.6 degrees.
+const STILL: f64 = 0.01;
+
 /// Returns the contacts that end with the pole on the other side of the whisker. A contact counts if the frames before and after it are known
 /// to be without contact. A note gives the number of the others. A gap in a contact counts as contact, unless it has the pole on other sides before
-/// and after.
+/// and after. A warning says if pole or base move, because the push angle of the model is the rotation of a base in front of a still pole.
 pub(super) fn detachments(
     rows: &[TrackedFrame],
     places: &[Option<NearestPlace>],
@@ -52,32 +57,54 @@ pub(super) fn detachments(
             _ => {}
         }
     }
+    let ways = found.iter().map(|(_, way)| *way).filter(|[_, part, _]| *part > STILL);
+    let ways: Vec<[f64; 3]> = ways.collect();
+    if !ways.is_empty() {
+        let most = |i: usize| ways.iter().map(|way| way[i].abs()).fold(0.0, f64::max);
+        let [mm, deg] = [most(0), most(2)].map(|most| digits(rounded(most, 2)));
+        remarks.warnings.push(format!(
+            "in {} of {} detachments, the pole moves by up to {mm} mm, as seen from the base, between first touch and detachment: push_angle_deg is the \
+             rotation of the base in the image, which is a push angle only if base and pole stand still; the pole's direction changes by up to {deg} deg",
+            ways.len(),
+            found.len()
+        ));
+    }
     left_out += u32::from(known.last().is_some_and(|(_, is_in_contact)| *is_in_contact));
     if left_out > 0 {
         remarks.notes.push(format!(
             "contacts that give no detachment, as first touch or end is next to a gap or outside the film: {left_out}"
         ));
     }
-    found
+    found.into_iter().map(|(detachment, _)| detachment).collect()
 }
 
-/// The detachment after a contact that begins with frame `touch` and ends before frame `end`; `None` if the whisker was released.
+/// Returns the detachment after a contact that begins with frame `touch` and ends before frame `end`, and the way of the pole meanwhile, as seen from the
+/// base: in mm, in parts of its distance, and the change of its direction in degrees. `None` if the whisker was released.
 fn detachment(
     rows: &[TrackedFrame],
     places: &[Option<NearestPlace>],
     touch: usize,
     end: usize,
-) -> Option<TrackedDetachment> {
+) -> Option<(TrackedDetachment, [f64; 3])> {
     let is_left = |i: usize| Some(places[i]?.offset_mm > 0.0);
     if is_left(touch - 1)? == is_left(end)? {
         return None;
     }
     let between = |i: usize| Some(0.5 * (rows[i - 1].angle_deg? + rows[i].angle_deg?));
     let push_angle_deg = between(end)? - between(touch)?;
-    Some(TrackedDetachment {
+    // From the base to the pole, in the axes of the image.
+    let pole = |i: usize| {
+        let axis = DVec2::from_angle(-rows[i].angle_deg?.to_radians());
+        Some(axis.rotate(places[i]?.pole_mm()))
+    };
+    let [first, last] = [pole(touch)?, pole(end - 1)?];
+    let way_mm = (last - first).length();
+    let way = [way_mm, way_mm / first.length(), first.angle_to(last).to_degrees()];
+    let detachment = TrackedDetachment {
         side: if is_left(touch - 1)? { Side::Cf } else { Side::Cb },
         distance_mm: places[touch]?.at_mm.length(),
         push_angle_deg,
         time_s: rows[end - 1].time_s,
-    })
+    };
+    Some((detachment, way))
 }

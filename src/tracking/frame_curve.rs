@@ -39,6 +39,13 @@ pub(super) struct NearestPlace {
     pub is_ahead: bool,
 }
 
+impl NearestPlace {
+    /// Returns the pole's centre in the frame of the base, in mm.
+    pub fn pole_mm(&self) -> DVec2 {
+        self.at_mm + self.offset_mm * DVec2::from_angle(self.angle).perp()
+    }
+}
+
 /// Form of the curve of one frame.
 #[derive(Clone, Debug)]
 enum CurveForm {

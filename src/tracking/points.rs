@@ -10,7 +10,16 @@ pub(super) fn read(
     texts: &[(String, String)],
     options: &TrackingOptions,
 ) -> Result<ImageFrames, TrackingError> {
+    let empty = |origin: &str| {
+        Err(CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into())
+    };
     let nameless = |option, value: &str| {
+        // A file without lines may be of any tracker.
+        if let [(text, origin)] = texts
+            && CsvLines::split(text, origin)?.lines.is_empty()
+        {
+            return empty(origin);
+        }
         let must = "must be left out with points x,y: they have no names".to_owned();
         Err(refused(option, value, must))
     };
@@ -46,7 +55,7 @@ pub(super) fn read(
         };
         let is_lost = lines.lines.is_empty();
         if is_lost && texts.len() == 1 {
-            return Err(CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into());
+            return empty(origin);
         }
         let header = CsvLine { number: 0, cells: names.to_vec().into() };
         let table = lines.table(header, origin)?;

@@ -85,7 +85,7 @@ fn a_picture_of_a_scene_is_that_of_its_map() {
         ),
         (
             &words("--channel=energy_nj --at=distance_mm=9 --at=pole_radius_mm=0.1"),
-            "scene.distance_mm=9.043.pole_radius_mm=0.1.energy_nj.png",
+            "scene.distance_mm=9.04348.pole_radius_mm=0.1.energy_nj.png",
         ),
     ] {
         let stored = ["render", "outputs/scene.exr", "-o", "stored.png"];

@@ -85,6 +85,13 @@ fn a_row_of_a_map_is_a_line_chart() {
     place.run(&row).assert_said(0, "");
     let regimes = place.text("p.svg");
     assert!(regimes.contains("<image"), "regimes have no values");
+    let column = words("render outputs/scene.exr --at push_angle_deg=10 -o p.svg");
+    place.good(&[&column[..], &["--channel", "force_un"]].concat());
+    let svg = place.text("p.svg");
+    assert!(svg.contains(">distance at first touch (mm)<") && !svg.contains("<image"));
+    let [force] = &lines(&svg, "#222b33")[..] else { panic!("{svg}") };
+    // At one push angle, the force falls with the distance; heights are from the top.
+    assert!(force.len() > 5 && force.is_sorted_by(|[x, y], [right, lower]| x < right && y < lower));
     // On CF the contact first slides toward the base, then sticks.
     place.write("scene.toml", &SCENE.replace("[grid]", "[contact]\nfriction = 0.3\n[grid]"));
     place.map(&["scene.toml", "--no-png"]);

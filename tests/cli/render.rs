@@ -33,6 +33,18 @@ fn every_channel_can_be_drawn() {
     assert_eq!(names(&place.path("outputs")).len(), 1 + map.channels().len());
 }
 
+/// Names of whiskers may have separators of paths, which a name of a file has not.
+#[test]
+fn whiskers_of_any_name_have_a_picture() {
+    let table = "[whiskers]\ntable = [{ name = 'L/C1', taper = 0.9 }, { name = 'L/C2', taper = 0.5 }]\n[grid]";
+    let place = Place::with(&SCENE.replace("[grid]", table));
+    place.map(&["scene.toml", "--no-png"]);
+    let run = place.good(&["render", "outputs/scene.exr", "--at", "whisker=L/C1"]);
+    assert_eq!(run.out.replace('\\', "/"), "outputs/scene.whisker=L-C1.png\n");
+    let range = ["render", "outputs/scene.exr", "--channel", "force_un", "--range", "5,1"];
+    place.run(&range).assert_refused(&["--range 5,1: must grow"]);
+}
+
 /// The picture of a part of a store equals that of the part's map.
 #[test]
 fn stores_and_parts_are_drawn_like_maps() {

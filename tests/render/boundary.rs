@@ -38,6 +38,17 @@ fn the_boundary_runs_where_the_margins_say() {
     }
 }
 
+/// A single push angle has no extent that a boundary could cross.
+#[test]
+fn a_single_push_angle_has_no_boundary() {
+    let mut scene = scene(1, 3, None, None);
+    scene.grid.push_angle_deg = vec![10.0];
+    let mut panel = flat(&scene, &[1; 3], f32::NAN);
+    panel.margin_deg = vec![0.3, 0.2, 0.1];
+    let document = svg(&picture(&scene, &[panel], &MapOptions::default()).unwrap());
+    assert!(!document.contains("boundary") && polylines(&document).is_empty());
+}
+
 /// The boundary of a map, line by line: push angles and distances. The cells have the given margins, row by row.
 fn boundary(angles: &[f64], margins: &[f32]) -> Vec<Vec<[f64; 2]>> {
     let mut scene = scene(angles.len(), margins.len() / angles.len(), None, None);

@@ -10,11 +10,12 @@ use whiskmap::terminal::StandardOutput;
 pub fn run() -> Result<(), Failure> {
     let mut out = StandardOutput::open();
     let reports = adapters();
-    let cpu = EngineDescription::of(None);
-    let cpu = format!("{} on {}", cpu.engine, cpu.adapter);
     if reports.is_empty() {
-        let why = missing();
-        writeln!(out, "no GPU adapter found: {why}\n--engine auto selects {cpu}")?;
+        let (why, cpu) = (missing(), EngineDescription::of(None).adapter);
+        writeln!(
+            out,
+            "no GPU adapter found: {why}\n--engine auto selects the spectral or the CPU engine by the scene, both f64 on {cpu}"
+        )?;
         return Ok(());
     }
     let selected = chosen(&reports, None, Precision::F32);

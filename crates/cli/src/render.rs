@@ -30,8 +30,8 @@ Examples:
   whiskmap render scenes/morphology.toml --at taper=0.95 --channel force_un
   whiskmap render - -o map.png --engine cpu < my_whisker.toml
 
-A picture has at most two sweep axes; give a value of each other axis with --at. A slice of one distance is drawn as a line chart \
-of the channel. Of a scene, only the whiskers of the picture are computed. An SVG or PDF contains the cells as pixels, and text and lines as vectors.
+A picture has at most two sweep axes; give a value of each other axis with --at. A slice of one distance, or of one push angle, is \
+drawn as a line chart of the channel. Of a scene, only the whiskers of the picture are computed. An SVG or PDF contains the cells as pixels, and text and lines as vectors.
 
 The ends of --range have the unit in the channel's name, or a given unit, such as 5mm,1cm. The colour bar selects its own unit.")]
 pub struct RenderArgs {
@@ -78,7 +78,8 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
         let number = Quantity::of(channel).parse(end);
         number.map_err(|why| refuse(&format!("{end}: {why}")))
     };
-    Ok([end(low)?, end(high)?])
+    let ends = [end(low)?, end(high)?];
+    if ends[0] < ends[1] { Ok(ends) } else { Err(refuse("must grow: the lower end comes first")) }
 }
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
@@ -151,6 +152,8 @@ fn target(
         Some(path) => path.clone(),
         None => {
             let chosen = map.readable().map(|(name, value)| format!("{name}={value}"));
+            // The name of a whisker may have separators of paths.
+            let chosen = chosen.map(|part| part.replace(['/', '\\'], "-"));
             let parts = chosen.chain(args.channel.clone());
             let parts: Vec<String> = parts.chain(["png".to_owned()]).collect();
             beside(args, map, files)?.with_extension(parts.join("."))

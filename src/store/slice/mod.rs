@@ -113,7 +113,7 @@ impl MapSlice {
         &self.part.chosen
     }
 
-    /// Returns names of the fixed axes of the slice, and their values as text to four digits.
+    /// Returns names of the fixed axes of the slice, and their values as text to six digits.
     pub fn readable(&self) -> impl Iterator<Item = (&'static str, String)> + '_ {
         readable(&self.part.chosen)
     }

@@ -51,7 +51,7 @@ pub fn print_warnings(
             (None, _) => format!("{named}: the largest strain of the push is not known"),
             (Some(strain), Some(true)) => format!(
                 "warning: {named}: the whisker yields: the largest strain of the push, {strain}, exceeds whisker.yield_strain = {most}; \
-                 --max-strain finds values within it"
+                 --max-strain searches for values within it"
             ),
             (Some(strain), _) => format!(
                 "{named}: the largest strain of the push is {strain}, within whisker.yield_strain = {most}"
