@@ -30,29 +30,8 @@ fn film() -> Place {
 fn an_empty_file_has_no_points() {
     let place = film();
     place.write("film.csv", "");
-    place.run(&FILM).assert_refused(&["film.csv: has no points"]);
-}
-
-/// A whisker whose base moves by 0.4 px a frame in front of a still pole.
-#[test]
-fn a_pole_that_moves_to_the_base_has_a_warning() {
-    const WARNING: &str = "in 1 of 1 detachments, the pole moves by up to";
-    let place = film();
-    let detachments = [&FILM[..], &["--detachments"]].concat();
-    assert!(!place.good(&detachments).err.contains("the pole moves"));
-    let text = place.text("film.csv");
-    let parts: Vec<&str> = text.lines().nth(1).unwrap().split(',').collect();
-    let moved = text.lines().enumerate().map(|(i, line)| {
-        let cell = |(column, cell): (usize, &str)| match cell.parse::<f64>() {
-            Ok(x) if i > 2 && column % 3 == 1 && parts[column] != "pole" => {
-                format!("{}", x + 0.4 * i as f64)
-            }
-            _ => cell.to_owned(),
-        };
-        line.split(',').enumerate().map(cell).collect::<Vec<_>>().join(",")
-    });
-    place.write("film.csv", &moved.collect::<Vec<_>>().join("\n"));
-    assert!(place.good(&detachments).err.contains(WARNING));
+    let import = [&FILM[..], &["--fps", "500"]].concat();
+    place.run(&import).assert_refused(&["film.csv: has no points"]);
 }
 
 #[test]

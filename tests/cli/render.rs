@@ -42,7 +42,9 @@ fn whiskers_of_any_name_have_a_picture() {
     let run = place.good(&["render", "outputs/scene.exr", "--at", "whisker=L/C1"]);
     assert_eq!(run.out.replace('\\', "/"), "outputs/scene.whisker=L-C1.png\n");
     let range = ["render", "outputs/scene.exr", "--channel", "force_un", "--range", "5,1"];
-    place.run(&range).assert_refused(&["--range 5,1: must grow"]);
+    place
+        .run(&range)
+        .assert_refused(&["--range 5,1: must be two different numbers, the smaller one first"]);
 }
 
 /// The picture of a part of a store equals that of the part's map.

@@ -79,7 +79,11 @@ fn range(text: &str, channel: &str) -> Result<[f64; 2], Failure> {
         number.map_err(|why| refuse(&format!("{end}: {why}")))
     };
     let ends = [end(low)?, end(high)?];
-    if ends[0] < ends[1] { Ok(ends) } else { Err(refuse("must grow: the lower end comes first")) }
+    if ends[0] < ends[1] {
+        Ok(ends)
+    } else {
+        Err(refuse("must be two different numbers, the smaller one first"))
+    }
 }
 
 pub fn run(args: &RenderArgs, files: &mut Files) -> Result<(), Failure> {
