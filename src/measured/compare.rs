@@ -98,7 +98,7 @@ impl MeasuredPoints {
     /// Compares the points with the detachments of `whisker` at `pole`. Rows of points with a missing value have no prediction.
     #[must_use]
     pub fn beside(&self, whisker: &Whisker, pole: &Pole) -> Comparison {
-        self.with_incomplete(self.compared(&[(whisker, pole)]))
+        self.with_incomplete(self.compared(|_| (whisker, pole)))
     }
 
     /// Returns compared points together with those that have a missing value, in the order of the file.
@@ -121,8 +121,12 @@ impl MeasuredPoints {
         Comparison { rows }
     }
 
-    /// Returns the points that have all of their values, each with the prediction for its own one of `whiskers`: `[point]`.
-    pub(super) fn compared(&self, whiskers: &[(&Whisker, &Pole)]) -> Vec<ComparedPoint> {
+    /// Returns the points that have all of their values, each with the prediction for its whisker and pole, which `of_whisker` returns by the
+    /// whisker's index: `[point]`.
+    pub(super) fn compared<'a>(
+        &self,
+        of_whisker: impl Fn(usize) -> (&'a Whisker, &'a Pole),
+    ) -> Vec<ComparedPoint> {
         let compared = |(point, DetachmentDerivatives { end, .. }): (&MeasuredPoint, _)| {
             let predicted_deg = self.angle.of_end(&end);
             ComparedPoint {
@@ -141,14 +145,14 @@ impl MeasuredPoints {
                 },
             }
         };
-        self.points.iter().zip(self.predicted(whiskers, &[])).map(compared).collect()
+        self.points.iter().zip(self.predicted(of_whisker, &[])).map(compared).collect()
     }
 
-    /// Returns the predicted detachments of the points that have all of their values, each for the point's own one of `whiskers`, with derivatives by
-    /// `variables`: `[point]`.
-    pub(crate) fn predicted(
+    /// Returns the predicted detachments of the points that have all of their values, each for its whisker and pole as in [`Self::compared`], with
+    /// derivatives by `variables`: `[point]`.
+    pub(super) fn predicted<'a>(
         &self,
-        whiskers: &[(&Whisker, &Pole)],
+        of_whisker: impl Fn(usize) -> (&'a Whisker, &'a Pole),
         variables: &[Variable],
     ) -> Vec<DetachmentDerivatives> {
         let order = |a: &MeasuredPoint, b: &MeasuredPoint| {
@@ -164,7 +168,7 @@ impl MeasuredPoints {
         let distances: Vec<Vec<f64>> = distances.map(Iterator::collect).collect();
         let pushed = sides.iter().zip(&distances).map(|(of_side, distances_mm)| {
             let MeasuredPoint { whisker, side, .. } = of_side[0];
-            let (whisker, pole) = whiskers[whisker];
+            let (whisker, pole) = of_whisker(whisker);
             PushedWhisker { whisker, pole, side, distances_mm }
         });
         let pushed: Vec<PushedWhisker> = pushed.collect();

@@ -63,12 +63,12 @@ impl MeasuredPoints {
 
     /// Compares the points with the detachments of their `whiskers`, as [`Self::beside`] does.
     pub(crate) fn beside_all(&self, whiskers: &[SweptWhisker]) -> Comparison {
-        self.with_incomplete(self.compared(&with_poles(whiskers)))
+        self.with_incomplete(self.compared(with_poles(whiskers)))
     }
 
     /// Returns the points that detach by the theory of their `whiskers`.
     pub(crate) fn detaching(&self, whiskers: &[SweptWhisker]) -> Self {
-        let pairs = self.points.iter().zip(self.compared(&with_poles(whiskers)));
+        let pairs = self.points.iter().zip(self.compared(with_poles(whiskers)));
         let detaching = pairs.filter(|(_, row)| row.residual_deg.is_some());
         Self {
             points: detaching.map(|(point, _)| *point).collect(),
@@ -84,7 +84,7 @@ impl MeasuredPoints {
         variables: &[Variable],
     ) -> Option<Residuals> {
         self.check_reach_of(whiskers).ok()?;
-        let predicted = self.predicted(&with_poles(whiskers), variables);
+        let predicted = self.predicted(with_poles(whiskers), variables);
         let pairs = || self.points.iter().zip(&predicted);
         let residual = |(point, predicted): (&MeasuredPoint, &DetachmentDerivatives)| {
             Some((self.angle.of_end(&predicted.end)? - point.angle_deg) / point.sd_deg)
@@ -111,7 +111,7 @@ pub(crate) struct Residuals {
     pub by: Option<Vec<Vec<f64>>>,
 }
 
-/// Returns the swept whiskers with their poles: `[whisker]`.
-fn with_poles(whiskers: &[SweptWhisker]) -> Vec<(&Whisker, &Pole)> {
-    whiskers.iter().map(|swept| (&swept.whisker, &swept.pole)).collect()
+/// Returns the function from the index of a swept whisker to the whisker and its pole.
+fn with_poles<'a>(whiskers: &'a [SweptWhisker]) -> impl Fn(usize) -> (&'a Whisker, &'a Pole) {
+    move |index| (&whiskers[index].whisker, &whiskers[index].pole)
 }
