@@ -32,7 +32,7 @@ def test_arguments_broadcast(cone):
 def test_elements_with_nan_are_no_whisker_however_many(cone):
     for arguments in (dict(distance_mm=[np.nan]), dict(distance_mm=np.nan), dict(distance_mm=15, taper=[np.nan]), dict(distance_mm=[np.nan] * 2)):
         end = wm.detachment(cone, side="cb", jac=True, **arguments)
-        assert (end.kind == "no-whisker").all() and np.isnan(end.push_angle_deg).all()
+        assert np.all(end.kind == "no-whisker") and np.isnan(end.push_angle_deg).all()
         assert len(end.refused) == end.kind.size and set(end.refused.values()) <= {"distance_mm is missing", "taper is missing"}
         with pytest.raises(ValueError, match="must be finite"):
             wm.detachment(cone, side="cb", strict=True, **arguments)

@@ -154,7 +154,7 @@ fn a_store_of_a_slice_has_the_values_of_the_whole() {
     assert_eq!(slice.scene.grid.distance_mm, whole.scene.grid.distance_mm[row..=row]);
     assert_eq!(slice.scene.grid.axis(Parameter::Friction), Some(&[0.3][..]));
     assert!(
-        slice.scene.title.starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.143")
+        slice.scene.title.starts_with("A sweep in blocks, friction = 0.3, distance_mm = 5.14286")
     );
     assert_eq!(slice.channels, whole.channels);
     for name in slice.channels.names() {

@@ -258,7 +258,7 @@ fn a_design_names_the_strain_of_a_solution() {
         beyond.err,
         format!(
             "warning: taper = {taper}: the whisker yields: the largest strain of the push, 0.00212405, exceeds whisker.yield_strain = \
-             0.002; --max-strain finds values within it\n"
+             0.002; --max-strain searches for values within it\n"
         )
     );
     // Of several parameters, the strain is the target.
