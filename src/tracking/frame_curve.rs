@@ -13,6 +13,9 @@ const PLACES: u32 = 64;
 /// Most Newton steps to the place that is nearest to the pole.
 const MOST_STEPS: usize = 20;
 
+/// Largest distance of the whisker from the pole at first touch that counts as rounding, in parts of the pole's distance.
+const TOUCHES: f64 = 1e-9;
+
 /// Curve in the plane of the image.
 #[derive(Clone, Debug)]
 struct PlaneCurve {
@@ -37,13 +40,6 @@ pub(super) struct NearestPlace {
     pub offset_mm: f64,
     /// True if the pole is ahead of the end of the curve, within 45 degrees and one length.
     pub is_ahead: bool,
-}
-
-impl NearestPlace {
-    /// Returns the pole's centre in the frame of the base, in mm.
-    pub fn pole_mm(&self) -> DVec2 {
-        self.at_mm + self.offset_mm * DVec2::from_angle(self.angle).perp()
-    }
 }
 
 /// Form of the curve of one frame.
@@ -192,6 +188,41 @@ impl FrameCurve {
             CurveForm::Polynomials { near, .. } => near.angle,
             CurveForm::Bent { pose, .. } => pose.angle,
         })
+    }
+
+    /// Returns the position of the base, in mm.
+    fn base_mm(&self) -> DVec2 {
+        self.turned(match &self.form {
+            CurveForm::Polynomials { near, .. } => near.base,
+            CurveForm::Bent { whisker, pose, .. } => whisker.length_mm * pose.base,
+        })
+    }
+
+    /// Returns a point in the frame of the base, in mm.
+    pub fn from_base(&self, point_mm: [f64; 2]) -> DVec2 {
+        DVec2::from_angle(-self.angle()).rotate(DVec2::from(point_mm) - self.base_mm())
+    }
+
+    /// Returns where a pole at the distance of `pole_mm` from the base first touches the curve: the pole's centre and the contact, in the frame of the
+    /// base, in mm. `pole_mm` is near this place and in that frame, and `offset_mm` is the distance of the pole's centre from the curve, positive on
+    /// its left. `None` if the curve does not reach that far.
+    pub fn first_touch(&self, pole_mm: DVec2, offset_mm: f64) -> Option<[DVec2; 2]> {
+        let axis = DVec2::from_angle(self.angle());
+        let (base, mut pole) = (self.base_mm(), pole_mm);
+        for _ in 0..MOST_STEPS {
+            let place = self.nearest((base + axis.rotate(pole)).into());
+            let off = place.offset_mm - offset_mm;
+            let tangent = DVec2::from_angle(place.angle);
+            let rounding = TOUCHES * pole_mm.length();
+            if off.abs() <= rounding {
+                let is_beside = (pole - place.at_mm).dot(tangent).abs() <= rounding;
+                return is_beside.then_some([pole, place.at_mm]);
+            }
+            // The pole turns around the base.
+            let slope = pole.perp().dot(tangent.perp());
+            pole = DVec2::from_angle((-off / slope).clamp(-0.5, 0.5)).rotate(pole);
+        }
+        None
     }
 
     /// Returns the angle by which the whisker turns from base to tip, at rest if it is a rod, in radians, positive counterclockwise.

@@ -229,7 +229,7 @@ impl Tracking {
         let shapes = curves.iter().map(|frame| (frame.number, frame.points_mm.clone()));
         Ok(Self {
             format,
-            detachments: detachment::detachments(&frames, &contacts, &mut remarks),
+            detachments: detachment::detachments(&curves, &frames, &contacts, &mut remarks),
             frames,
             notes: remarks.notes,
             warnings: remarks.warnings,
