@@ -14,6 +14,7 @@ pub use baseline::CurvatureBaseline;
 pub use frames::CurvatureFrames;
 
 use crate::names::names;
+use crate::quantile::median;
 use crate::scene::{FrameDeviations, Pole, Whisker, digits, rounded};
 use crate::trace::row;
 use bending::Bending;
@@ -179,6 +180,12 @@ impl ForceOptions {
     }
 }
 
+/// Least number of frames without contact that show a moment, as for a baseline.
+const LEAST_FREE: usize = 2;
+
+/// Largest moment without contact, in parts of that in contact, without a warning.
+const MOST_AT_REST: f64 = 0.25;
+
 /// Largest distance of a measured contact from the contact of the model without a warning, in whisker lengths.
 ///
 /// Measured on 68 films made with points off by up to 2 pixels, or with a wrong shape at rest: 67 films have distances of up to 0.054. The axis
@@ -212,7 +219,25 @@ pub fn warnings(whisker: &Whisker, forces: &[FrameForce]) -> Vec<String> {
             far.len()
         )
     });
-    without.into_iter().chain(far).collect()
+    without.into_iter().chain(far).chain(unlike_rest(forces)).collect()
+}
+
+/// Returns a warning if the curvature without contact is not that of the scene's shape at rest.
+fn unlike_rest(forces: &[FrameForce]) -> Option<String> {
+    let is_free = |force: &&FrameForce| force.reason.is_none() && force.force_un == Some(0.0);
+    let (free, held): (Vec<&FrameForce>, Vec<&FrameForce>) = forces.iter().partition(is_free);
+    if free.len() < LEAST_FREE || held.is_empty() {
+        return None;
+    }
+    let of_free = median(free.iter().filter_map(|force| force.moment_nnm)).abs();
+    let of_held = median(held.iter().filter_map(|force| Some(force.moment_nnm?.abs())));
+    (of_free > MOST_AT_REST * of_held).then(|| {
+        let [of_free, of_held] = [of_free, of_held].map(|nnm| digits(rounded(nnm, 3)));
+        format!(
+            "frames without contact have a moment of {of_free} nN m, others {of_held} nN m (medians): the shape at rest of the scene may not be the \
+             whisker's; a baseline measures it"
+        )
+    })
 }
 
 /// Computes the force in each of the `frames` of `whisker` at `pole`, whose friction is left out, `[frame]`. With [`ForceMethod::Lever`], a

@@ -44,17 +44,13 @@ pub fn did_you_mean<'a>(
         None => known.clone().find(|known| is_of_another_unit(name, known)),
     };
     if let Some(expected) = converted {
-        let (whole, per_rad) = without_per_rad(expected);
-        let (stem, unit) = whole.rsplit_once('_').unwrap_or(("", whole));
-        let per = if stem.ends_with("per") { "1/" } else { "" };
-        let unit = SPELLED.iter().find(|(end, _)| *end == unit).map_or(unit, |(_, unit)| unit);
-        let per_rad = if per_rad { "/rad" } else { "" };
+        let unit = UnitName::of(expected).spelled();
         let [radii, half] = match radius {
             Some(_) => ["radii ", ", half the diameters"],
             None => [""; 2],
         };
         return format!(
-            "; values must be {radii}in {per}{unit}{per_rad}{half}: convert them, and use the name `{expected}`"
+            "; values must be {radii}in {unit}{half}: convert them, and use the name `{expected}`"
         );
     }
     let found = similar(name, known);
@@ -64,16 +60,14 @@ pub fn did_you_mean<'a>(
 /// Shortest known name of which another name may be a misspelling: `id` is none of `wid`.
 const SHORTEST: usize = 4;
 
-/// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, in the unit alone, or in a diameter for a
-/// radius, or `name` lacks the unit. Names of two axes, such as `force_x` and `force_y`, are two names.
+/// Returns true if `name` is most likely meant as the `known` name: they differ in one letter, in case, in punctuation, in the unit alone, or in a
+/// diameter for a radius, or `name` lacks the unit or a part of it. Names of two axes, such as `force_x` and `force_y`, are two names.
 pub(crate) fn is_meant_as(name: &str, known: &str) -> bool {
     let name = radius_for(name).unwrap_or_else(|| name.to_lowercase());
     let known = known.to_lowercase();
     let is_misspelt = known.len() >= SHORTEST && strsim::osa_distance(&name, &known) == 1;
-    name == known
-        || is_misspelt && !are_axes(&name, &known)
-        || name == stem(&known)
-        || is_of_another_unit(&name, &known)
+    let [found, meant] = [&name, &known].map(|name| UnitName::of(name));
+    is_misspelt && !are_axes(&name, &known) || found.is_stem_of(&meant) && found.fits(&meant)
 }
 
 /// Returns true if two names differ in the letter of an axis alone.
@@ -104,16 +98,6 @@ fn radius_for(name: &str) -> Option<String> {
     words.find(|word| name.contains(word)).map(|word| name.replace(word, "radius"))
 }
 
-/// Returns a lower-case name without the unit at its end.
-fn stem(name: &str) -> &str {
-    match name.rsplit_once('_') {
-        Some((stem, unit)) if UNITS.iter().any(|units| units.contains(&unit)) => {
-            stem.strip_suffix("_per").unwrap_or(stem)
-        }
-        _ => name,
-    }
-}
-
 /// Returns the values of a list in their order, each once: a name that is given twice counts once.
 ///
 /// ```
@@ -130,39 +114,89 @@ pub fn each_once<T: Clone + PartialEq>(values: &[T]) -> Vec<T> {
     kept
 }
 
-/// Units at the ends of names, with all units of one quantity in one list.
+/// Units at the ends of names, with all units of one quantity in one list. `nm` may be nanometres or newton metres.
 const UNITS: [&[&str]; 7] = [
     &["nm", "um", "mm", "cm", "m", "inch"],
     &["nm2", "um2", "mm2", "cm2", "m2"],
     &["deg", "rad", "mrad"],
     &["pa", "kpa", "mpa", "gpa", "tpa"],
     &["s", "ms", "us", "min", "h"],
-    &["un", "nn", "mn", "n"],
-    &["nnm", "unm", "mnm", "nnmm", "unmm", "mnmm", "nmm"],
+    FORCES,
+    &["nnm", "unm", "mnm", "nm", "nnmm", "unmm", "mnmm", "nmm"],
 ];
+
+/// Units of forces.
+const FORCES: &[&str] = &["un", "nn", "mn", "n"];
 
 /// Units of known names, as they end the names and as messages spell them.
 const SPELLED: [(&str, &str); 3] = [("gpa", "GPa"), ("un", "uN"), ("nnm", "nNm")];
 
-/// Returns a name without `_per_rad` at its end, and whether it has this end.
-fn without_per_rad(name: &str) -> (&str, bool) {
-    name.strip_suffix("_per_rad").map_or((name, false), |name| (name, true))
+/// Word between the units of a ratio.
+const PER: &str = "per";
+
+/// Name in lower case, in words, and the words of the unit at its end.
+struct UnitName {
+    stem: Vec<String>,
+    unit: Vec<String>,
 }
 
-/// Returns true if two names differ only in the units at their ends, and the units belong to one quantity.
-fn is_of_another_unit(name: &str, other: &str) -> bool {
-    let [name, other] = [name, other].map(str::to_lowercase);
-    let ([name, other], [per, other_per]) = {
-        let (name, per) = without_per_rad(&name);
-        let (other, other_per) = without_per_rad(&other);
-        ([name, other], [per, other_per])
-    };
-    let ends = name.rsplit_once('_').zip(other.rsplit_once('_'));
-    ends.is_some_and(|((stem, unit), (own_stem, own_unit))| {
-        let mut quantities = UNITS.iter();
-        let has_both = |units: &&[&str]| [unit, own_unit].iter().all(|unit| units.contains(unit));
-        per == other_per && stem == own_stem && unit != own_unit && quantities.any(has_both)
-    })
+impl UnitName {
+    fn of(name: &str) -> Self {
+        let name = name.to_lowercase().replace(['\u{b5}', '\u{3bc}'], "u");
+        let words = name.split(|letter: char| !letter.is_alphanumeric());
+        let mut stem: Vec<String> = Vec::new();
+        for word in words.filter(|word| !word.is_empty()) {
+            match stem.last_mut() {
+                // `N m`, and `N` with a dot and `m`.
+                Some(force) if FORCES.contains(&&**force) && ["m", "mm"].contains(&word) => {
+                    force.push_str(word);
+                }
+                _ => stem.push(word.to_owned()),
+            }
+        }
+        let is_of_unit = |word: &String| word == PER || quantities(word).next().is_some();
+        let count = stem.iter().skip(1).rev().take_while(|word| is_of_unit(word)).count();
+        let unit = stem.split_off(stem.len() - count);
+        Self { stem, unit }
+    }
+
+    /// Returns true if this is the `known` name but for units. A ratio of two units is rare enough that a part of the name is enough.
+    fn is_stem_of(&self, known: &Self) -> bool {
+        let is_ratio = self.unit.len() > 2 && self.unit == known.unit;
+        self.stem == known.stem || is_ratio && known.stem.ends_with(&self.stem)
+    }
+
+    /// Returns true if all units are units of the quantities of the `known` name.
+    fn fits(&self, known: &Self) -> bool {
+        self.unit.iter().filter(|word| *word != PER).all(|word| {
+            quantities(word).any(|units| known.unit.iter().any(|other| units.contains(&&**other)))
+        })
+    }
+
+    /// Returns the unit as messages spell it, such as `nNm/rad` or `1/mm`.
+    fn spelled(&self) -> String {
+        let spelled = |word: &str| {
+            let spelled = SPELLED.iter().find(|(end, _)| *end == word);
+            spelled.map_or(word, |(_, unit)| unit).to_owned()
+        };
+        let parts = self.unit.split(|word| word == PER);
+        let parts = parts.map(|words| match words {
+            [] => "1".to_owned(),
+            words => words.iter().map(|word| spelled(word)).collect(),
+        });
+        parts.collect::<Vec<_>>().join("/")
+    }
+}
+
+/// Returns the lists of units that contain a word.
+fn quantities(word: &str) -> impl Iterator<Item = &'static [&'static str]> {
+    UNITS.into_iter().filter(move |units| units.contains(&word))
+}
+
+/// Returns true if two names differ only in the units at their ends, and the units belong to the same quantities.
+fn is_of_another_unit(name: &str, known: &str) -> bool {
+    let [name, known] = [name, known].map(UnitName::of);
+    name.stem == known.stem && !name.unit.is_empty() && name.unit != known.unit && name.fits(&known)
 }
 
 /// The most characters that a message quotes of a text, at its beginning and at its end.
@@ -197,6 +231,11 @@ mod tests {
             ("time_ms", "time_s", "s"),
             ("base_force_y_mn", "base_force_y_un", "uN"),
             ("base_moment_unmm", "base_moment_nnm", "nNm"),
+            ("base_moment_nm", "base_moment_nnm", "nNm"),
+            ("Base moment (N\u{b7}m)", "base_moment_nnm", "nNm"),
+            ("follicle_stiffness_nm_per_rad", "follicle_stiffness_nnm_per_rad", "nNm/rad"),
+            ("follicle_stiffness_nnm_per_deg", "follicle_stiffness_nnm_per_rad", "nNm/rad"),
+            ("follicle_stiffness_per_rad", "follicle_stiffness_nnm_per_rad", "nNm/rad"),
             ("follicle_stiffness_mnm_per_rad", "follicle_stiffness_nnm_per_rad", "nNm/rad"),
         ] {
             let hint = did_you_mean(name, ["side", known]);
@@ -205,6 +244,7 @@ mod tests {
         }
         for (name, known) in [
             ("Distance_MM", "distance_mm"),
+            ("Distance (mm)", "distance_mm"),
             ("distance", "distance_mm"),
             ("distance_deg", "distance_mm"),
             ("distnce_cm", "distance_mm"),
@@ -223,6 +263,10 @@ mod tests {
             ("curvature", "curvature_per_mm"),
             ("lenght_mm", "length_mm"),
             ("tapper", "taper"),
+            ("length [\u{b5}m]", "length_mm"),
+            ("follicle_stiffness", "follicle_stiffness_nnm_per_rad"),
+            ("follicle_stiffness_nnm_rad", "follicle_stiffness_nnm_per_rad"),
+            ("stiffness_nnm_per_rad", "follicle_stiffness_nnm_per_rad"),
             ("base_diameter_mm", "base_radius_um"),
             ("Base_diam", "base_radius_um"),
         ] {

@@ -8,7 +8,7 @@ use super::parameter::Parameter;
 /// Key of the standard deviation of the radii of measured rows.
 pub(super) const ROWS: &str = "profile_radius_um";
 
-/// Largest standard deviation: the largest number that any key of a scene may have.
+/// Largest standard deviation, but for parameters that may be larger: these may have one as large as they are.
 const MOST: f64 = 1e5;
 
 /// Checks the standard deviations of a scene's numbers. Returns `None` if the scene gives none.
@@ -27,7 +27,8 @@ pub(super) fn checked(scene: &SceneBuilder) -> Result<Option<Deviations>, SceneF
     let limits = NumberLimits::between(0.0, MOST);
     for &(parameter, deviation) in parameters {
         let key = format!("uncertainty.{}", parameter.name());
-        limits.check(&key, deviation)?;
+        let [_, most] = parameter.limits();
+        NumberLimits::between(0.0, MOST.max(most)).check(&key, deviation)?;
         let must = match parameter {
             Parameter::LengthMm if is_measured => "whisker.profile.rows end at the length",
             Parameter::Taper if has_tip() => {

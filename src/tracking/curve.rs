@@ -10,7 +10,7 @@ use crate::scene::{LENGTH_MM, digits, rounded};
 use crate::traced::{MOST_DEGREE, TracedShape, common_degree};
 use glam::DVec2;
 use rayon::prelude::*;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::ops::RangeInclusive;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{CURVATURE_TERMS, CurvaturePolynomial};
@@ -27,6 +27,18 @@ const NEAR: f64 = 0.6;
 
 /// Angle by which a whisker turns from base to tip at least, in radians, to have a concave side.
 const STRAIGHT: f64 = 0.02;
+
+/// Usual difference of the angle at the follicle from that of the arc through follicle and tip, in radians: the curvature of a whisker is not constant.
+const USUAL_MEAN: f64 = PI / 12.0;
+
+/// Usual scatter of this difference in a film, in radians. From a wrong axis, the difference changes by twice the angle of the base.
+const USUAL_SCATTER: f64 = PI / 60.0;
+
+/// Smallest difference of the misfits of two axes that shows which one is right.
+const SHOWN: f64 = 0.25;
+
+/// Least mean difference that is unlikely, in radians.
+const UNLIKELY_MEAN: f64 = PI / 6.0;
 
 /// Frames with what their curves need.
 pub(super) struct Curves<'a> {
@@ -50,13 +62,7 @@ impl<'a> Curves<'a> {
         let scale = options.mm_per_pixel;
         let mut is_unlike = false;
         let (curves, needs) = if frames.iter().any(|frame| frame.bend.is_some()) {
-            let axis = options.face_axis.unwrap_or_else(|| face_axis(frames));
-            let name = axis.name();
-            let found =
-                if options.face_axis.is_some() { "" } else { ", as the ends of the segments show" };
-            remarks
-                .notes
-                .push(format!("angles are measured from the {name} axis of the image{found}"));
+            let axis = face_axis(frames, options.face_axis, remarks);
             let arcs = frames.iter().map(|frame| arc(frame, axis, scale));
             (arcs.collect(), "angle, curvature, follicle and tip".to_owned())
         } else {
@@ -253,17 +259,60 @@ fn from_x(angle_deg: f64, axis: FaceAxis) -> f64 {
     }
 }
 
-/// The axis with which the angles are nearest to those of arcs through the ends of the segments.
-fn face_axis(frames: &[ImageFrame]) -> FaceAxis {
-    let closeness = |axis: FaceAxis| -> f64 {
-        let each = frames.iter().filter_map(|frame| {
+/// Difference between the angles at the follicle, measured from an axis, and those of arcs through the ends of the segments.
+struct AxisFit {
+    axis: FaceAxis,
+    /// Mean difference, in radians.
+    mean: f64,
+    /// Sum of squares of the mean and of the scatter, over those that are usual.
+    misfit: f64,
+}
+
+impl AxisFit {
+    fn of(frames: &[ImageFrame], axis: FaceAxis) -> Self {
+        let differences = frames.iter().filter_map(|frame| {
             let (_, chord, curvature, angle) = measured(frame)?;
             let base = libm::atan2(chord.y, chord.x) - half_turn(chord, curvature)?;
-            Some(libm::cos(from_x(angle, axis) - base))
+            Some(DVec2::from_angle(from_x(angle, axis) - base))
         });
-        each.sum()
-    };
-    if closeness(FaceAxis::X) > closeness(FaceAxis::Y) { FaceAxis::X } else { FaceAxis::Y }
+        let differences: Vec<DVec2> = differences.collect();
+        let mean = differences.iter().copied().sum::<DVec2>().to_angle();
+        let off = differences.iter().map(|one| DVec2::from_angle(mean).angle_to(*one).powi(2));
+        let scatter = off.sum::<f64>() / differences.len().max(1) as f64;
+        let misfit = (mean / USUAL_MEAN).powi(2) + scatter / USUAL_SCATTER.powi(2);
+        Self { axis, mean, misfit }
+    }
+}
+
+/// Returns the axis from which the angles of segments are measured: the given one, or that with the smaller misfit. A warning says if that is in doubt.
+fn face_axis(
+    frames: &[ImageFrame],
+    given: Option<FaceAxis>,
+    Remarks { notes, warnings }: &mut Remarks,
+) -> FaceAxis {
+    let [x, y] = [FaceAxis::X, FaceAxis::Y].map(|axis| AxisFit::of(frames, axis));
+    let is_x = given.map_or(x.misfit < y.misfit, |axis| axis == FaceAxis::X);
+    let [taken, other] = if is_x { [x, y] } else { [y, x] };
+    let names = [&taken, &other].map(|fit| fit.axis.name());
+    let found = if given.is_some() { "" } else { ", as the ends of the segments show" };
+    notes.push(format!("angles are measured from the {} axis of the image{found}", names[0]));
+    if given.is_some() && taken.misfit > other.misfit + SHOWN {
+        warnings.push(format!(
+            "the ends of the segments fit angles from the {} axis better: check `face_axis`",
+            names[1]
+        ));
+    } else if given.is_none() && taken.misfit > other.misfit - SHOWN {
+        warnings.push(format!(
+            "the ends of the segments hardly show that angles are not measured from the {} axis: give `face_axis`",
+            names[1]
+        ));
+    } else if taken.mean.abs() > UNLIKELY_MEAN {
+        warnings.push(format!(
+            "angles at the follicle differ by {:.0} deg from those of arcs through follicle and tip (mean): check `face_axis` and the signs of angle and curvature",
+            taken.mean.abs().to_degrees()
+        ));
+    }
+    taken.axis
 }
 
 /// The arc of a measured segment, with the y axis upward.

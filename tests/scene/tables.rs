@@ -134,6 +134,11 @@ fn deviations_belong_to_numbers_of_the_scene() {
             "20:13",
             ["uncertainty.length_mm = inf: must be", "between 0 and 100000"],
         ),
+        (
+            "follicle_stiffness_nnm_per_rad = 1e16",
+            "20:34",
+            ["uncertainty.follicle_stiffness_nnm_per_rad", "between 0 and 1000000000000000"],
+        ),
         ("length_mm = '1'", "20:13", ["invalid type: string", "expected a number"]),
         (
             "friction = 0.1",

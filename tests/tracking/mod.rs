@@ -211,13 +211,18 @@ fn the_base_is_named_found_or_near_the_follicle() {
 
 /// Rows of `whisk` for the arc, whose angle is measured from this axis of the image.
 fn measurements(axis: FaceAxis) -> String {
+    segments(axis, &ANGLES, 0.0)
+}
+
+/// Rows of `whisk` for the arc at these angles of the base, in degrees. The whiskers differ from the arc by `off` degrees at the base.
+fn segments(axis: FaceAxis, angles: &[f64], off: f64) -> String {
     let mut text = "fid,wid,label,face_x,face_y,length,score,angle,curvature,follicle_x,follicle_y,tip_x,tip_y\n".to_owned();
-    for (frame, angle) in ANGLES.iter().enumerate().filter(|(frame, _)| *frame != 2) {
+    for (frame, angle) in angles.iter().enumerate().filter(|(frame, _)| *frame != 2) {
         let ([x, y], [tip_x, tip_y]) = (arc(0.0, *angle), arc(20.0, *angle));
         // The y axis of the image is downward, where counterclockwise is negative.
         let angle = match axis {
-            FaceAxis::X => -angle,
-            FaceAxis::Y => 90.0 + angle,
+            FaceAxis::X => -angle - off,
+            FaceAxis::Y => 90.0 + angle + off,
         };
         let curvature = -0.04 * SCALE;
         text += &format!(
@@ -282,6 +287,31 @@ fn measurements_of_whisk_come_back() {
         why,
         "whisker = (left out): must be an identity in the column whisker_id: 1 (5 rows), 3 (5 rows)"
     );
+}
+
+/// At 45 degrees, both axes are as near to the ends of a whisker that is no arc, but only from one of them do angles turn as the ends do.
+#[test]
+fn the_axis_of_angles_is_that_from_which_they_turn_as_the_ends() {
+    for axis in [FaceAxis::X, FaceAxis::Y] {
+        for (middle, off) in [(-46.0, 4.0), (-44.0, -4.0), (-50.0, 9.0)] {
+            let angles = [-4.0, -2.0, 0.0, 2.0, 3.0, 4.0].map(|angle| middle + angle);
+            let found = parse(&segments(axis, &angles, off), &options()).unwrap();
+            for (row, angle) in found.frames.iter().zip(angles).filter(|(row, _)| row.frame != 2) {
+                assert_near(row.angle_deg, angles[0] - angle, 1e-9);
+            }
+            assert_eq!(found.warnings, [""; 0]);
+        }
+    }
+    let warns = |text: &str, options: &TrackingOptions, what: &str| {
+        let found = parse(text, options).unwrap().warnings;
+        assert!(found.iter().any(|warning| warning.contains(what)), "{what}: {found:?}");
+    };
+    let still = segments(FaceAxis::X, &[-45.0; 6], 4.0);
+    warns(&still, &options(), "hardly show that angles are not measured from the ");
+    let wrong = with(&|options| options.face_axis = Some(FaceAxis::Y));
+    warns(&measurements(FaceAxis::X), &wrong, "fit angles from the x axis better");
+    let off = segments(FaceAxis::X, &ANGLES, 40.0);
+    warns(&off, &options(), "differ by 40 deg from those of arcs");
 }
 
 /// Points `x,y` of a frame in steps of 1 mm, from the base or from the tip.
