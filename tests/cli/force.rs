@@ -113,7 +113,10 @@ fn a_baseline_is_reported_and_used() {
         rows.iter().map(|row| !row[9].is_empty()).collect()
     };
     assert_eq!(sds(&plain), [false; 4]);
-    assert!(plain.err.starts_with("warning: frames without contact have a moment of "), "{plain:?}");
+    assert!(
+        plain.err.starts_with("warning: frames without contact have a moment of "),
+        "{plain:?}"
+    );
     let spanned = force(&place, &["--baseline", "0s..100ms"]);
     assert_eq!(spanned.code, Some(0), "{spanned:?}");
     assert!(spanned.err.contains("baseline of 3 frames without contact: "), "{spanned:?}");
