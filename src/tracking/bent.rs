@@ -14,7 +14,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{CurvaturePolynomial, Rest, Rod};
 use whiskmap_mechanics::shooting::Resolution;
-use whiskmap_mechanics::shooting::shape::varied_profile;
+use whiskmap_mechanics::shooting::sensitivity::BaseDerivatives;
+use whiskmap_mechanics::shooting::shape::{RodPoint, profile, varied_profile};
 
 /// Steps of trajectories: their errors, 1e-6 of the length, are far below those of points.
 const RESOLUTION: Resolution = Resolution::COARSE;
@@ -127,6 +128,25 @@ impl BentPose {
 
     /// Points of the curve at growing places, in lengths of the whisker.
     fn points(&self, whisker: &TrackedRod, places: &[f64]) -> BentPoints {
+        self.points_by(varied_profile, whisker, places)
+    }
+
+    /// Points as of [`Self::points`], without derivatives.
+    fn plain_points(&self, whisker: &TrackedRod, places: &[f64]) -> BentPoints {
+        let plain = |rod: &Rod, tau: f64, load: f64, resolution: Resolution, at: &[f64]| {
+            let points = profile(rod, tau, load, resolution, at).into_iter();
+            points.map(|point| (point, BaseDerivatives::default())).collect()
+        };
+        self.points_by(plain, whisker, places)
+    }
+
+    /// Points as of [`Self::points`], with the derivatives of the points of `profile` before the contact.
+    fn points_by(
+        &self,
+        profile: impl Fn(&Rod, f64, f64, Resolution, &[f64]) -> Vec<(RodPoint, BaseDerivatives<f64>)>,
+        whisker: &TrackedRod,
+        places: &[f64],
+    ) -> BentPoints {
         let TrackedRod { rod, rest, .. } = whisker;
         let base_tangent = unit(self.angle);
         let at_rest = |turn: DVec2, s: f64, from: DVec2| {
@@ -150,7 +170,7 @@ impl BentPose {
         let before = places.partition_point(|s| *s < contact);
         let mut at = vec![0.0];
         at.extend_from_slice(&places[..before]);
-        let loaded = varied_profile(rod, rod.tau(contact), load, RESOLUTION, &at);
+        let loaded = profile(rod, rod.tau(contact), load, RESOLUTION, &at);
         // Derivatives of angle and position by arclength and force of the contact, from those by tau and load.
         let by = |by_tau: [f64; 3], by_load: [f64; 3]| {
             let by_force = by_load.map(|derivative| derivative / (radius * radius));
@@ -245,12 +265,25 @@ struct FrameProblem<'a> {
     cancel: &'a AtomicBool,
 }
 
+/// Curve of a pose near the feet of the points.
+struct Feet {
+    curve: BentPoints,
+    /// Place of the last foot.
+    end: f64,
+    residuals: Vec<f64>,
+}
+
+impl AsRef<[f64]> for Feet {
+    fn as_ref(&self) -> &[f64] {
+        &self.residuals
+    }
+}
+
 impl FrameProblem<'_> {
-    /// Returns the curve near the feet of the points, and the place of the last one.
-    fn feet(&self, pose: &BentPose) -> (BentPoints, f64) {
+    fn feet(&self, pose: &BentPose) -> Feet {
         let mut places = self.frame.places.clone();
         for _ in 0..FOOT_STEPS {
-            let here = pose.points(self.whisker, &places);
+            let here = pose.plain_points(self.whisker, &places);
             let mut least = 0.0;
             let all = places.iter_mut().zip(&here.points);
             // The first point is at the base.
@@ -263,7 +296,8 @@ impl FrameProblem<'_> {
             }
         }
         let end = places.last().copied().unwrap_or_default();
-        (pose.points(self.whisker, &places), end)
+        let curve = pose.points(self.whisker, &places);
+        Feet { residuals: self.residuals_at(&curve), curve, end }
     }
 
     /// Returns the residuals of a curve near the feet of the points.
@@ -286,26 +320,25 @@ impl FrameProblem<'_> {
 }
 
 impl BoundedProblem for FrameProblem<'_> {
-    type Place = Vec<f64>;
+    type Place = Feet;
 
     fn count(&self) -> usize {
         self.frame.points.len() + 1 + usize::from(self.is_at_pole)
     }
 
-    fn residuals(&self, x: &[f64]) -> Option<Vec<f64>> {
+    fn residuals(&self, x: &[f64]) -> Option<Feet> {
         if !x.iter().all(|unknown| unknown.is_finite()) {
             return None;
         }
-        let residuals = self.residuals_at(&self.feet(&BentPose::of(x)).0);
-        residuals.iter().all(|residual| residual.is_finite()).then_some(residuals)
+        let feet = self.feet(&BentPose::of(x));
+        feet.residuals.iter().all(|residual| residual.is_finite()).then_some(feet)
     }
 
-    fn jacobian(&self, x: &[f64], _: &Vec<f64>) -> Option<Vec<Vec<f64>>> {
+    fn jacobian(&self, x: &[f64], Feet { curve: feet, .. }: &Feet) -> Option<Vec<Vec<f64>>> {
         if self.cancel.load(Ordering::Relaxed) {
             return None;
         }
         let pose = BentPose::of(x);
-        let (feet, _) = self.feet(&pose);
         let mut columns = vec![Vec::with_capacity(self.count()); x.len()];
         // Row of the residual `axis . (point - foot)`. `across` is its derivative by the angle of the axis.
         let mut push = |axis: DVec2, foot: &BentPoint, across: f64, axis_by: [f64; 2]| {
@@ -390,19 +423,13 @@ pub(super) fn fit(
     }
     let x = found(&problem, &guess, TOLERANCE)?;
     let pose = BentPose::of(&x);
-    let (feet, end) = problem.feet(&pose);
+    let Feet { curve, end, residuals } = problem.feet(&pose);
     let is_beside =
         x.get(3).zip(problem.contacts).is_some_and(|(s, [least, most])| *s > least && *s < most);
-    let contact = feet.contact.as_ref().filter(|_| is_beside);
+    let contact = curve.contact.as_ref().filter(|_| is_beside);
     let offset = contact.map(|(contact, _)| {
         let away = frame.pole - contact.position;
         away.length().copysign(contact.tangent.perp_dot(away))
     });
-    Ok(FrameFit {
-        pose,
-        end,
-        offset,
-        residuals: problem.residuals_at(&feet),
-        count: frame.points.len(),
-    })
+    Ok(FrameFit { pose, end, offset, residuals, count: frame.points.len() })
 }

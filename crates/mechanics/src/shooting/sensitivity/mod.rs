@@ -42,7 +42,7 @@ pub struct Arrival<T> {
 }
 
 /// First derivatives of the base's angle and position by `tau` and load, in the frame of the contact.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct BaseDerivatives<T> {
     /// Derivatives of the base's `[theta, X, Y]` by `tau` of the contact at fixed load: radians and whisker lengths.
     pub by_tau: Triple<T>,
