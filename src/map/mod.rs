@@ -22,8 +22,8 @@ use pipeline::Pipeline;
 use std::convert::Infallible;
 use std::sync::atomic::AtomicBool;
 pub use summary::{Audit, EngineCells, Summary};
-pub use times::{Stage, thread_seconds};
-use times::{StageTimes, process_seconds};
+use times::StageTimes;
+pub use times::{Stage, process_seconds, thread_seconds};
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
