@@ -7,8 +7,6 @@ use crate::scene::CheckedScene;
 use crate::stored::array;
 use crate::threads::{self, ThreadCount};
 use pyo3::prelude::*;
-use std::ops::ControlFlow;
-use std::sync::atomic::Ordering;
 use whiskmap::store;
 
 /// Map of a scene, of which whiskers are computed when they are read. Calls of several threads must take turns.
@@ -67,13 +65,7 @@ impl ComputedMap {
             py,
             self.threads,
             |_| Ok(()),
-            |cancel| {
-                let mut on_progress = |_| match cancel.load(Ordering::Relaxed) {
-                    true => ControlFlow::Break(()),
-                    false => ControlFlow::Continue(()),
-                };
-                self.map.read(channel, &whiskers, &mut on_progress)
-            },
+            |cancel| self.map.read(channel, &whiskers, &mut |_| {}, cancel),
         )?
         .map_err(|why| of_store(&why))?;
         Ok((array(py, channel, values), self.map.take_warnings()))

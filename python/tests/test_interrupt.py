@@ -11,6 +11,12 @@ from conftest import ROOT
 # Statements that make the arguments `prepared`, and the call that is interrupted. Each call takes many seconds.
 CALLS = {
     "map": ("scene = cone.replace(taper=wm.Range(0, 1, 200))", "wm.map(scene, engine='cpu')"),
+    # One group of whiskers, whose rows are followed by continuation.
+    "map of soft mounts": (
+        "soft = cone.replace(taper=wm.Range(0, 0.9, 64), follicle_stiffness_nnm_per_rad=100,"
+        " distance_mm=wm.Range(3, 19, 4000), push_angle_deg=[20.0])",
+        "wm.map(soft, engine='cpu')",
+    ),
     "lazy map": ("ds = wm.map(cone.replace(taper=wm.Range(0, 1, 200)), engine='cpu', lazy=True)", "ds.force_un.load()"),
     "curve of many whiskers": ("scene = cone.replace(taper=wm.Range(0, 1, 9000))", "wm.curve(scene)"),
     "curve of many distances": (

@@ -234,3 +234,23 @@ def test_forces_of_a_follicle_refer_to_its_axis_or_to_the_base(cone, tmp_path):
     assert found["follicle"].force_un.max() > 1 and not found["follicle"].equals(found["tangent"])
     with pytest.raises(ValueError, match="axis = 'base': must be one of 'tangent', 'follicle'"):
         wm.force(scene, FRAMES, model=True, axis="base")
+
+
+def test_arrays_that_are_combined_by_place_have_equal_labels(cone):
+    time, angle = pd.Series([0, 0.1, 0.2]), pd.Series([0, 20.0, 30.0], index=[2, 1, 0])
+    with pytest.raises(ValueError, match="^angle_deg: has other labels than time_s: arrays are combined by place"):
+        wm.whisk(cone, 15.66, time, angle)
+    rough = wm.Scene.read(ROOT / "scenes/texture_cone.toml")
+    with pytest.raises(ValueError, match="angle_deg: has the dimension angle where time_s has time"):
+        wm.texture(rough, xr.DataArray([0, 0.1], dims="time"), xr.DataArray([0.0, 1.0], dims="angle"))
+    readings = {"base_moment_nnm": pd.Series([1.0, 2.0]), "base_force_x_un": pd.Series([1.0, 2.0], index=[1, 0])}
+    with pytest.raises(ValueError, match=r"^readings\['base_force_x_un'\]: has other labels than readings\['base_moment_nnm'\]"):
+        wm.locate(cone, readings)
+    points = {"x_mm": pd.Series([0.0, 9.0, 18.0]), "y_mm": pd.Series([2.0, 1.0, 0.0], index=[2, 1, 0])}
+    with pytest.raises(ValueError, match=r"^rest_points\['y_mm'\]: has other labels"):
+        cone.replace(parabola_per_mm=None, vertex_mm=None, rest_points=points)
+    # Equal labels, whatever they are, and arrays without labels.
+    for labels in ([0, 1, 2], [2, 1, 0]):
+        same = wm.whisk(cone, 15.66, time.set_axis(labels), pd.Series([0, 20.0, 30.0], index=labels))
+        assert same.samples.angle_deg.values.tolist() == [0, 20, 30]
+    assert wm.whisk(cone, 15.66, time, [0, 20.0, 30.0]).samples.sizes["time_s"] == 3

@@ -12,7 +12,7 @@ from whiskmap import _whiskmap
 from whiskmap._maps import _checked
 from whiskmap._description import PARAMETERS, resembling
 from whiskmap._scene import Scene
-from whiskmap._values import real_array, side_of
+from whiskmap._values import check_labels, real_array, side_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -160,7 +160,7 @@ def detachment(
         if PARAMETERS.get(name) != name:
             raise TypeError(f"detachment() got an unexpected keyword argument {name!r}{resembling(name)}")
         arrays[name] = real_array(name, values)
-    _check_labels({"distance_mm": distance_mm, **parameters, "side": side})
+    check_labels({"distance_mm": distance_mm, **parameters, "side": side})
     for name, array in arrays.items():
         is_allowed = np.isfinite(array) if strict else ~np.isinf(array)
         if not is_allowed.all():
@@ -212,24 +212,6 @@ def detachment(
         refused={tuple(map(int, np.unravel_index(own, shape))): reasons[own] for own in sorted(reasons)},
         **{name: full(values, np.nan) for name, values, _ in quantities},
     )
-
-
-def _check_labels(arguments: dict[str, Any]) -> None:
-    """Refuse arrays of xarray and series of pandas whose dimensions or labels differ at the same places."""
-    known: dict[int, tuple[str, Any, Any]] = {}
-    for name, values in arguments.items():
-        if hasattr(values, "indexes"):
-            axes = [(dimension, values.indexes.get(dimension)) for dimension in reversed(values.dims)]
-        else:
-            axes = [(None, values.index)] if hasattr(values, "reindex") else []
-        for place, (dimension, labels) in enumerate(axes):
-            other, its_dimension, its_labels = known.setdefault(place, (name, dimension, labels))
-            if dimension is not None and its_dimension is not None and dimension != its_dimension:
-                raise ValueError(
-                    f"{name}: has the dimension {dimension} where {other} has {its_dimension}: arrays broadcast by place; broadcast by xarray.broadcast"
-                )
-            if labels is not None and its_labels is not None and not labels.equals(its_labels):
-                raise ValueError(f"{name}: has other labels than {other}: arrays broadcast by place; align them, or give their values")
 
 
 def _variables(jac: bool | Sequence[str], given: tuple[str, ...]) -> tuple[str, ...]:

@@ -13,7 +13,17 @@ from whiskmap import _whiskmap
 from whiskmap._datasets import attributes, rest_coords, variables
 from whiskmap._maps import _checked
 from whiskmap._scene import Scene
-from whiskmap._values import csv_text, naming_rows, number, numbers, origin_of, own_names, real_array, real_array_or_nan
+from whiskmap._values import (
+    check_labels,
+    csv_text,
+    naming_rows,
+    number,
+    numbers,
+    origin_of,
+    own_names,
+    real_array,
+    real_array_or_nan,
+)
 from whiskmap._warnings import warn
 
 if TYPE_CHECKING:
@@ -115,7 +125,8 @@ def whisk(
     Raises
     ------
     ValueError
-        If the times do not grow, an angle is beyond a turn, `bridge_s` is negative, or the whisker cannot be in the state at the start.
+        If the times do not grow, an angle is beyond a turn, `bridge_s` is negative, or the whisker cannot be in the state at the start. If arrays of
+        xarray or series of pandas have other dimensions or labels at the same places.
     StateError
         If the resting whisker does not reach the pole.
     SceneError
@@ -129,6 +140,7 @@ def whisk(
         If a free whisker beyond first touch is assumed, gaps are bridged or not, or samples are undecided.
     """
     checked, distance = _checked(scene), number("distance_mm", distance_mm)
+    check_labels({"time_s": time_s, "angle_deg": angle_deg})
     course = (real_array("time_s", time_s), real_array_or_nan("angle_deg", angle_deg))
     time, angle = _one_dimensional(*course)
     samples, events, lost, dissipated, cf_touch, warnings = _whiskmap.whisk(
@@ -158,10 +170,12 @@ def texture(scene: Scene, time_s: ArrayLike, angle_deg: ArrayLike, *, curvature_
     Raises
     ------
     ValueError
-        If the scene has no surface or has friction, the whisker does not fit between asperities, or the course is refused.
+        If the scene has no surface or has friction, the whisker does not fit between asperities, or the course is refused. If arrays of xarray or
+        series of pandas have other dimensions or labels at the same places.
     RuntimeError
         If a detachment is not found.
     """
+    check_labels({"time_s": time_s, "angle_deg": angle_deg})
     time, angle = _one_dimensional(real_array("time_s", time_s), real_array("angle_deg", angle_deg))
     samples, events, stays, histogram, lost, reached, warning = _whiskmap.texture(
         _checked(scene), time, angle, _optional("curvature_at_mm", curvature_at_mm)

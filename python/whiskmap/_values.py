@@ -106,6 +106,24 @@ def real_array_or_nan(name: str, values: ArrayLike) -> NDArray[Any]:
     return np.reshape(known, array.shape)
 
 
+def check_labels(arguments: Mapping[str, Any]) -> None:
+    """Refuse arrays of xarray and series of pandas that are combined by place, but have other dimensions or labels at the same places."""
+    known: dict[int, tuple[str, Any, Any]] = {}
+    for name, values in arguments.items():
+        if hasattr(values, "indexes"):
+            axes = [(dimension, values.indexes.get(dimension)) for dimension in reversed(values.dims)]
+        else:
+            axes = [(None, values.index)] if hasattr(values, "reindex") else []
+        for place, (dimension, labels) in enumerate(axes):
+            other, its_dimension, its_labels = known.setdefault(place, (name, dimension, labels))
+            if dimension is not None and its_dimension is not None and dimension != its_dimension:
+                raise ValueError(
+                    f"{name}: has the dimension {dimension} where {other} has {its_dimension}: arrays are combined by place; broadcast by xarray.broadcast"
+                )
+            if labels is not None and its_labels is not None and not labels.equals(its_labels):
+                raise ValueError(f"{name}: has other labels than {other}: arrays are combined by place; align them, or give their values")
+
+
 def side_of(side: Any, *, is_one: bool = False) -> str:
     """Return "cb", "cf" or "both", whatever its capitals; `is_one` refuses "both"."""
     allowed = ("cb", "cf") if is_one else ("both", "cb", "cf")
@@ -159,7 +177,9 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
         table = {own: values for own, values in table.variables.items() if values.ndim}
     if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
-    listed = {str(own): _listed(table[own]) for own in unique_names(name, table)}
+    given = {str(own): table[own] for own in unique_names(name, table)}
+    check_labels({f"{name}[{own!r}]": values for own, values in given.items()})
+    listed = {own: _listed(values) for own, values in given.items()}
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
         raise ValueError(f"{name}: columns must be equally long, have {lengths}")

@@ -92,6 +92,15 @@ fn described(one: &[Coordinate], other: &[Coordinate]) -> [String; 2] {
     }
 }
 
+/// Checks that two scenes have the same axes, whiskers and poles, so that [`compare`](super::compare) can compare their maps.
+///
+/// # Errors
+/// The first difference.
+pub fn check_same([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
+    check_grids([&first.grid, &second.grid])?;
+    check_scenes([first, second])
+}
+
 fn check_scenes([first, second]: [&Scene; 2]) -> Result<(), Mismatch> {
     // Marks of yielding are no part of a state.
     let unmarked = |whisker: &Whisker| Whisker { yield_strain: None, ..whisker.clone() };

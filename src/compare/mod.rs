@@ -7,7 +7,7 @@ mod codes;
 mod quantity;
 mod within;
 
-pub use self::agree::Mismatch;
+pub use self::agree::{Mismatch, check_same};
 pub use self::codes::{CodeComparison, CodePair, DifferentCodes};
 pub use self::quantity::QuantityComparison;
 pub use self::within::Within;

@@ -8,7 +8,7 @@ use crate::map::{self, Panel, Summary};
 use crate::plan::Plan;
 use crate::scene::Scene;
 use crate::store::ComputedMap;
-use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 
 /// Computes the regime map of `scene`, every cell with its state, on all cores.
 ///
@@ -109,17 +109,15 @@ fn run<E: From<Error> + Send>(
         if let Some(on_progress) = &options.on_progress {
             on_progress(done, all);
         }
-        match options.is_cancelled() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
     };
+    let never = AtomicBool::new(false);
+    let cancel = options.cancel.as_deref().unwrap_or(&never);
     let mut whiskers = 0..plan.whiskers;
     let mut keep = |panels: &mut Vec<Panel>| {
         let mut numbered = panels.drain(..).zip(&mut whiskers);
         numbered.try_for_each(|(panel, whisker)| each(whisker, panel))
     };
-    let summary = map::run(scene, &plan, engine, &mut on_progress, &mut keep)?;
+    let summary = map::run(scene, &plan, engine, &mut on_progress, cancel, &mut keep)?;
     match summary.is_cancelled {
         true => Err(Error::Cancelled.into()),
         false => Ok(summary),

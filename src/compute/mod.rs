@@ -39,8 +39,8 @@ pub struct Options {
     pub channels: Option<Channels>,
     /// Function that is called with the numbers of finished and of all cells of a map, on the thread that computes it. `None` for no calls.
     pub on_progress: Option<Arc<dyn Fn(usize, usize) + Send + Sync>>,
-    /// Flag that cancels: if true, a map ends with [`Error::Cancelled`] after the current row batch, and curves after the current whiskers. `None` if
-    /// nothing cancels.
+    /// Flag that cancels: if true, a map or a curve soon ends with [`Error::Cancelled`], within the whiskers that it computes. `None` if nothing
+    /// cancels.
     pub cancel: Option<Arc<AtomicBool>>,
 }
 

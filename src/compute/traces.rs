@@ -2,14 +2,15 @@
 
 use super::{Error, Options, accuracy};
 use crate::scene::{Scene, SweepPlace};
-use crate::sensitivity::detachments_of_sides;
+use crate::sensitivity::detachments_of_sides_until;
 use crate::trace::{
     Branch, Detachment, NoState, StableBranch, SweptSide, WhiskerShape, sides, whiskers_at_once,
 };
+use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
-/// Maximum number of distances of a side between two looks at the flag that cancels.
+/// Maximum number of distances of a side that are computed together.
 const DISTANCES_AT_ONCE: usize = 4096;
 
 /// Computes where every whisker of `scene` detaches: at each distance, CF before CB.
@@ -32,13 +33,15 @@ pub fn curve(scene: &Scene, options: Options) -> Result<Vec<(SweepPlace, Detachm
     let accuracy = accuracy(scene, options.tolerance_deg, &Side::BOTH)?;
     let resolution = accuracy.map_or(Resolution::FINE, |accuracy| accuracy.resolution);
     let distances = &scene.grid.distance_mm;
+    let never = AtomicBool::new(false);
+    let cancel = options.cancel.as_deref().unwrap_or(&never);
     let of_sides = |sides: &[SweptSide]| {
         let mut ends = vec![Vec::with_capacity(distances.len()); sides.len()];
         for part in distances.chunks(DISTANCES_AT_ONCE) {
-            if options.is_cancelled() {
+            let Some(found) = detachments_of_sides_until(resolution, sides, part, &[], cancel)
+            else {
                 break;
-            }
-            let found = detachments_of_sides(resolution, sides, part, &[]);
+            };
             for (ends, found) in ends.iter_mut().zip(found) {
                 ends.extend(found.into_iter().map(|found| found.end));
             }

@@ -8,6 +8,7 @@ use crate::trace::{
 };
 use rayon::prelude::*;
 use std::cell::OnceCell;
+use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
 
@@ -181,8 +182,9 @@ impl<'a> ComputedPush<'a> {
             distances_mm: &scene.grid.distance_mm,
         });
         let pushed: Vec<PushedWhisker> = pushed.collect();
-        let ends = trace::detachments(Resolution::FINE, &pushed, EndDetail::State, |_, end, _| end);
-        let pushes = scenes.iter().zip(ends).map(|(scene, mut ends)| Self {
+        let (detail, never) = (EndDetail::State, AtomicBool::new(false));
+        let ends = trace::detachments(Resolution::FINE, &pushed, detail, &never, |_, end, _| end);
+        let pushes = scenes.iter().zip(ends.unwrap_or_default()).map(|(scene, mut ends)| Self {
             scene,
             side,
             end: ends.pop(),

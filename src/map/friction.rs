@@ -7,6 +7,7 @@ use crate::engine::{Values, WhiskerSide};
 use crate::friction::{ContactHistory, ContactPhase, ContactQuery, FrictionState, Sliding, states};
 use crate::sheet::{LevelCurve, rows_per_batch};
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Row of a whisker side with friction, and its cells in contact.
 pub struct FrictionRow {
@@ -33,15 +34,19 @@ struct FrictionCell {
 
 /// Replaces the states of `rows` of `side` that do not slide toward the tip, in a `panel` that is `width` cells wide and begins with the
 /// row `first_row`. Without a known history a cell keeps its regime, which follows from the contact that slides toward the tip, but has no
-/// state. Cells beyond a detachment to which the contact does not slide are marked.
+/// state. Cells beyond a detachment to which the contact does not slide are marked. If `cancel` is true, the function soon returns, and the `panel` is
+/// incomplete.
 pub fn replace(
     side: &WhiskerSide,
     rows: &[FrictionRow],
     [width, first_row]: [usize; 2],
     panel: &mut Panel,
+    cancel: &AtomicBool,
 ) {
     let has_strain = !panel.peak_strain.is_empty();
-    let found = rows.par_chunks(rows_per_batch(rows.len())).map(|rows| {
+    let batches = rows.par_chunks(rows_per_batch(rows.len()));
+    let batches = batches.filter(|_| !cancel.load(Ordering::Relaxed));
+    let found = batches.map(|rows| {
         let levels = rows.iter().map(|row| side.sheet.fine_level(row.row));
         let levels: Vec<LevelCurve> = levels.collect();
         let histories = ContactHistory::of(&levels);

@@ -20,16 +20,16 @@ use crate::stopwatch::Stopwatch;
 pub use panel::Panel;
 use pipeline::Pipeline;
 use std::convert::Infallible;
-use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 pub use summary::{Audit, EngineCells, Summary};
-pub use times::{Stage, thread_seconds};
-use times::{StageTimes, process_seconds};
+use times::StageTimes;
+pub use times::{Stage, process_seconds, thread_seconds};
 
 /// Computes the panels of `scene` according to `plan`, on the threads of the current pool; call it within
 /// `rayon::ThreadPool::install`, or every stage of every row batch wakes the pool up.
 ///
 /// `engine` solves cells, a GPU's on a thread of its own, some batches ahead; the CPU engine solves all others, and everything after a failure.
-/// `on_progress(n)` is called after `n` more cells are finished; if it breaks, the run ends there and
+/// `on_progress(n)` is called after `n` more cells are finished. If `cancel` is true, the run soon ends, within the whiskers that it computes, and
 /// [`Summary::is_cancelled`] is set. `keep` gets the finished panels in the order of the sweep, while the
 /// next ones are computed: it holds at most one group of them. If [`Plan::band_rows`] is less than the distances, it gets one band of rows
 /// of a panel at a time instead, as a panel of these rows. The panels that it leaves are written again.
@@ -40,7 +40,8 @@ pub fn run<E: Send>(
     scene: &Scene,
     plan: &Plan,
     engine: Option<&mut dyn Engine>,
-    on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    on_progress: &mut dyn FnMut(usize),
+    cancel: &AtomicBool,
     keep: &mut (dyn FnMut(&mut Vec<Panel>) -> Result<(), E> + Send),
 ) -> Result<Summary, E> {
     let description = EngineDescription::of(engine.as_deref());
@@ -49,7 +50,7 @@ pub fn run<E: Send>(
     let integrates = engine.as_ref().is_some_and(|engine| engine.integrates_nodes(effects));
     let mut packing = StageTimes::default();
     let mut summary = Worker::with(engine, |worker| {
-        let mut pipeline = Pipeline::new(scene, plan, worker, integrates);
+        let mut pipeline = Pipeline::new(scene, plan, worker, integrates, cancel);
         let mut finished: Vec<Panel> = Vec::new();
         let mut is_open = true;
         while is_open {
@@ -84,8 +85,8 @@ pub fn run_to_end(
     engine: Option<&mut dyn Engine>,
     mut keep: impl FnMut(&mut Vec<Panel>) + Send,
 ) -> Summary {
-    let on_progress = &mut |_| ControlFlow::Continue(());
-    let Ok(summary) = run(scene, plan, engine, on_progress, &mut |panels| {
+    let never = AtomicBool::new(false);
+    let Ok(summary) = run(scene, plan, engine, &mut |_| {}, &never, &mut |panels| {
         keep(panels);
         Ok::<(), Infallible>(())
     });

@@ -18,8 +18,9 @@ use crate::sheet::SheetUse;
 use crate::stopwatch::Stopwatch;
 use std::collections::VecDeque;
 use std::iter;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::batch::Method;
 
@@ -60,15 +61,18 @@ pub struct Pipeline<'a, 'e> {
     /// True if the engine integrates the trajectories of nets.
     engine_integrates: bool,
     summary: Summary,
+    /// Flag that cancels the run.
+    cancel: &'a AtomicBool,
 }
 
 impl<'a, 'e> Pipeline<'a, 'e> {
-    /// Creates the pipeline of a run, whose engine may integrate the trajectories of nets.
+    /// Creates the pipeline of a run, whose engine may integrate the trajectories of nets. `cancel` ends it.
     pub fn new(
         scene: &'a Scene,
         plan: &'a Plan,
         worker: Worker<'e>,
         engine_integrates: bool,
+        cancel: &'a AtomicBool,
     ) -> Self {
         let push_angle_deg = &scene.grid.push_angle_deg;
         let rows = |cells: usize| (cells / push_angle_deg.len()).max(1);
@@ -104,19 +108,19 @@ impl<'a, 'e> Pipeline<'a, 'e> {
             has_device,
             engine_integrates,
             summary: Summary::default(),
+            cancel,
         }
     }
 
     /// Computes the panels of the next group, or the next band of rows of its panel; `None` after the last one, and if the run is cancelled.
-    pub fn panels(
-        &mut self,
-        on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
-    ) -> Option<Vec<Panel>> {
+    pub fn panels(&mut self, on_progress: &mut dyn FnMut(usize)) -> Option<Vec<Panel>> {
         let (scene, channels) = (self.scene, self.plan.channels);
         let (mut panels, mut whiskers) = (Vec::new(), Vec::new());
         let mut is_complete = false;
         while !is_complete {
-            let (mut cells, is_last) = self.advance(&mut panels)?;
+            let advanced = self.advance(&mut panels);
+            self.summary.is_cancelled |= self.cancel.load(Ordering::Relaxed);
+            let (mut cells, is_last) = advanced.filter(|_| !self.summary.is_cancelled)?;
             if is_last {
                 let group = self.unfinished.next().unwrap_or_default();
                 whiskers = group.map(|index| scene.whisker(index)).collect();
@@ -128,10 +132,7 @@ impl<'a, 'e> Pipeline<'a, 'e> {
                     }
                 }
             }
-            self.summary.is_cancelled |= on_progress(cells).is_break();
-            if self.summary.is_cancelled {
-                return None;
-            }
+            on_progress(cells);
             is_complete = is_last;
         }
         let mut times = self.summary.stages;
@@ -234,14 +235,14 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         }
     }
 
-    /// Computes the sides of the next group with this `net` ([`whisker_sides`]).
+    /// Computes the sides of the next group with this `net` ([`whisker_sides`]); `None` after the last group, and if the run is cancelled.
     fn sides_of_next(&mut self, net: (SheetUse, Option<f64>)) -> Option<Vec<WhiskerSide>> {
         let whiskers = self.groups.next()?;
         let found = whiskers.filter_map(|index| self.scene.whisker(index).ok());
         let found: Vec<SweptWhisker> = found.collect();
         let of_plan = (self.plan, self.method);
-        let sides = || whisker_sides(self.scene, of_plan, net, &self.columns, &found);
-        Some(self.summary.stages.time(Stage::Sheets, sides))
+        let sides = || whisker_sides(self.scene, of_plan, net, &self.columns, &found, self.cancel);
+        self.summary.stages.time(Stage::Sheets, sides)
     }
 
     /// Makes the next batch, with expansions of its rows if there is an engine. Returns it, and whether it is the last one of its band. The batch
@@ -302,7 +303,8 @@ impl<'a, 'e> Pipeline<'a, 'e> {
         let cells = cells.map(|cells| (cells, bounds));
         let (mut cells, audit) = complete(batch, cells, has_failed, &mut self.cpu, counts);
         summary.audit += audit;
-        let fill = || rows::fill(batch, &mut cells, sides, [width, band.start], panels);
+        let fill =
+            || rows::fill(batch, &mut cells, sides, [width, band.start], panels, self.cancel);
         summary.stages.time(Stage::Classification, fill);
         if audit.differing > 0 {
             self.worker.fail_audit(audit.differing, audit.cells);

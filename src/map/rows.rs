@@ -7,15 +7,18 @@ use crate::classify::{PushSpan, Regime, RowBoundary, TIE};
 use crate::engine::{BatchRow, Cells, RowBatch, RowCells, SideColumns, WhiskerSide};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Classifies the `cells` of a batch of whole rows and writes them into `panels`, which are `width` cells wide and begin with the row
-/// `first_row` of their whiskers; each panel has `sides_per_panel` sides. Cells at first touch and in doubt are replaced.
+/// `first_row` of their whiskers; each panel has `sides_per_panel` sides. Cells at first touch and in doubt are replaced. If `cancel` is
+/// true, the function soon returns, and `panels` are incomplete.
 pub fn fill(
     batch: &RowBatch,
     cells: &mut Cells,
     sides_per_panel: usize,
     [width, first_row]: [usize; 2],
     panels: &mut [Panel],
+    cancel: &AtomicBool,
 ) {
     let mut rows: Vec<(&BatchRow, RowCells)> =
         batch.rows.iter().zip(cells.rows_mut(batch)).collect();
@@ -31,6 +34,7 @@ pub fn fill(
             let into = panel.rows_mut(width, from..from + rows.len());
             let side = &batch.sides[first.side];
             let rows = into.into_par_iter().zip(rows);
+            let rows = rows.filter(|_| !cancel.load(Ordering::Relaxed));
             let found = rows.map(|(into, (row, cells))| {
                 let crossings = &side.sheet.crossings[row.row];
                 let writer = RowWriter {
@@ -46,7 +50,7 @@ pub fn fill(
                 writer.write()
             });
             let found: Vec<FrictionRow> = found.flatten_iter().collect();
-            friction::replace(side, &found, [width, first_row], panel);
+            friction::replace(side, &found, [width, first_row], panel, cancel);
         }
     });
 }
@@ -203,7 +207,8 @@ mod tests {
         let regimes = |cells: &mut Cells| {
             let mut panel = Panel::unwritten(cells.len(), Channels::STANDARD);
             let size = [cells.len(), 0];
-            fill(&batch, cells, 1, size, std::slice::from_mut(&mut panel));
+            let panels = std::slice::from_mut(&mut panel);
+            fill(&batch, cells, 1, size, panels, &AtomicBool::new(false));
             panel.regime
         };
         let mut cells = Cpu::default().solve(&batch);

@@ -7,17 +7,20 @@ use crate::sensitivity::of_rows;
 use crate::sheet::{Sheet, SheetRequest, SheetUse};
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::shooting::batch::Method;
 
 /// Computes every side of some `whiskers` of `scene`, whisker by whisker, with the derivatives of the plan. Sheets are for the use `serves`. With
-/// `most`, a side also has a net of values, whose rows have a residual of at most `most` whisker lengths.
+/// `most`, a side also has a net of values, whose rows have a residual of at most `most` whisker lengths. If `cancel` is true,
+/// the function soon returns `None`.
 pub fn whisker_sides(
     scene: &Scene,
     (plan, method): (&Plan, Method),
     (serves, most): (SheetUse, Option<f64>),
     columns: &[Arc<SideColumns>],
     whiskers: &[SweptWhisker],
-) -> Vec<WhiskerSide> {
+    cancel: &AtomicBool,
+) -> Option<Vec<WhiskerSide>> {
     let of_whisker = |swept| columns.iter().map(move |columns| (swept, columns));
     let pairs: Vec<_> = whiskers.iter().flat_map(of_whisker).collect();
     let grid = &scene.grid;
@@ -31,9 +34,12 @@ pub fn whisker_sides(
             serves,
         }
     };
-    let sheets = Sheet::several(method, pairs.iter().map(request).collect());
+    let sheets = Sheet::several(method, pairs.iter().map(request).collect(), cancel)?;
     let sides = pairs.into_par_iter().zip(sheets);
     let sides = sides.map(|((swept, columns), sheet)| {
+        if cancel.load(Ordering::Relaxed) {
+            return None;
+        }
         let mut side = WhiskerSide::new(Arc::clone(columns), swept.whisker.units(), sheet);
         if !derivatives.is_empty() {
             let (resolution, sheet) = (method.resolution, &side.sheet);
@@ -41,10 +47,10 @@ pub fn whisker_sides(
             side.push_derivatives =
                 of_rows(resolution, sheet, pushed, &grid.distance_mm, &derivatives);
         }
-        match most {
+        Some(match most {
             Some(most) => side.with_net(most),
             None => side,
-        }
+        })
     });
     sides.collect()
 }

@@ -51,7 +51,8 @@ impl StageTimes {
 }
 
 /// Returns the CPU seconds of this process since it started; `None` if the system has no such clock.
-pub(super) fn process_seconds() -> Option<f64> {
+#[must_use]
+pub fn process_seconds() -> Option<f64> {
     #[cfg(unix)]
     return Some(seconds(rustix::time::ClockId::ProcessCPUTime));
     #[cfg(windows)]

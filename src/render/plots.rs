@@ -6,11 +6,14 @@ use super::labels;
 use super::marks::YIELDING;
 use crate::design::{Design, DesignEnd, DesignTarget, is_wide};
 use crate::locate::{LocatedState, Locator};
-use crate::scene::digits;
+use crate::scene::{digits, rounded};
 use crate::sensitivity::Variable;
 use crate::trace::{BranchMark, BranchPoint, Detachment, DetachmentKind, WhiskerShape};
 use crate::yields::PushMark;
-use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke};
+use whiskmap_plot::{Disc, Dot, Ink, Line, Plot, Stroke, readable_value};
+
+/// Maximum number of digits of a value in a legend: another unit must not show the rounding of the conversion.
+const MOST_DIGITS: usize = 15;
 
 /// Axis of a plot of table rows: a label and the value of each row.
 #[derive(Clone, Copy, Debug)]
@@ -231,7 +234,8 @@ pub fn designs(variable: Variable, target: &DesignTarget, design: &Design) -> Pl
     plot.logarithmic = [design.range, reached].map(is_wide);
     let wanted = design.range.map(|end| [end, target.value]).to_vec();
     let wanted = Line::new(wanted, Ink::Grey, Stroke::Dashed);
-    let value = digits(target.value);
+    let (value, size) = readable_value(target.value, size);
+    let value = digits(rounded(value, MOST_DIGITS));
     plot.lines.push(wanted.named(format!("{value} {size}").trim_end()));
     for piece in design.ends.chunk_by(|a, b| a.kind == b.kind) {
         if let Some((ink, name)) = look(piece[0].kind) {

@@ -111,6 +111,20 @@ pub fn detachments_of_sides(
     distances_mm: &[f64],
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
+    let never = AtomicBool::new(false);
+    let found = detachments_of_sides_until(resolution, sides, distances_mm, variables, &never);
+    found.unwrap_or_default()
+}
+
+/// Computes the detachments of some `sides` of a sweep as [`detachments_of_sides`] does. If `cancel` is true, the function soon returns `None`.
+#[must_use]
+pub fn detachments_of_sides_until(
+    resolution: Resolution,
+    sides: &[SweptSide],
+    distances_mm: &[f64],
+    variables: &[Variable],
+    cancel: &AtomicBool,
+) -> Option<Vec<Vec<DetachmentDerivatives>>> {
     let pushed = sides.iter().filter_map(|SweptSide { swept, side }| {
         let swept = swept.ok()?;
         Some(PushedWhisker {
@@ -121,7 +135,8 @@ pub fn detachments_of_sides(
         })
     });
     let pushed: Vec<PushedWhisker> = pushed.collect();
-    let mut found = detachments_of(resolution, &pushed, EndDetail::All, variables).into_iter();
+    let found = until(resolution, &pushed, EndDetail::All, variables, cancel)?;
+    let mut found = found.into_iter();
     let without = |end| DetachmentDerivatives {
         end,
         by: vec![Err(NoDerivative::NoDetachment); variables.len()],
@@ -133,7 +148,7 @@ pub fn detachments_of_sides(
             ends.map(without).collect()
         }
     };
-    sides.iter().map(of_side).collect()
+    Some(sides.iter().map(of_side).collect())
 }
 
 /// Computes the detachments of several `pushed` whiskers, with this `detail` and their derivatives by `variables`: `[pushed][distance]`. Their
@@ -145,6 +160,18 @@ pub fn detachments_of(
     detail: EndDetail,
     variables: &[Variable],
 ) -> Vec<Vec<DetachmentDerivatives>> {
+    let found = until(resolution, pushed, detail, variables, &AtomicBool::new(false));
+    found.unwrap_or_default()
+}
+
+/// Computes detachments as [`detachments_of`] does. If `cancel` is true, the function soon returns `None`.
+fn until(
+    resolution: Resolution,
+    pushed: &[PushedWhisker],
+    detail: EndDetail,
+    variables: &[Variable],
+    cancel: &AtomicBool,
+) -> Option<Vec<Vec<DetachmentDerivatives>>> {
     let differentiated = pushed.iter().map(|pushed| {
         let PushedWhisker { whisker, pole, side, .. } = *pushed;
         Differentiated::new(resolution, whisker, pole, side, variables)
@@ -155,7 +182,7 @@ pub fn detachments_of(
             by: differentiated[index].at_crossing(crossing.as_ref(), end.distance_mm),
             end,
         };
-    trace::detachments(resolution, pushed, detail, of_end)
+    trace::detachments(resolution, pushed, detail, cancel, of_end)
 }
 
 /// Returns the derivatives of the push angle at the detachments of `sheet`, whose rows have these distances, by each of `parameters`, in

@@ -11,6 +11,7 @@ use super::span::RowSpan;
 use super::{Sheet, rows_per_batch};
 use rayon::prelude::*;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 use whiskmap_mechanics::rod::{Rest, Rod, Side};
 use whiskmap_mechanics::shooting::batch::Method;
 
@@ -109,8 +110,9 @@ impl SheetDraft {
     }
 }
 
-/// Follows the open rows of all `drafts` by continuation, and sets their crossings and spans.
-pub fn follow(drafts: &mut [SheetDraft]) {
+/// Follows the open rows of all `drafts` by continuation, and sets their crossings and spans. If `cancel` is true, the function soon returns `None`, and
+/// the drafts have open rows.
+pub fn follow(drafts: &mut [SheetDraft], cancel: &AtomicBool) -> Option<()> {
     let rows = drafts.iter().enumerate().flat_map(|(index, draft)| {
         let rows = draft.open_rows.iter();
         rows.map(move |row| (index, *row))
@@ -129,7 +131,7 @@ pub fn follow(drafts: &mut [SheetDraft]) {
                 is_first_alone: *serves == SheetUse::FirstEnds,
             }
         });
-        let found = stable_pieces(&continued.collect::<Vec<_>>()).into_iter();
+        let found = stable_pieces(&continued.collect::<Vec<_>>(), cancel)?;
         let ends = rows.zip(found).map(|((draft, row), found)| {
             let is_incomplete = !found.are_complete && !found.pieces.is_empty();
             let has_unknown = is_incomplete || !draft.has_samples && !draft.sheet.touches(row);
@@ -138,13 +140,14 @@ pub fn follow(drafts: &mut [SheetDraft]) {
             let spans = pieces.filter_map(|piece| piece.span(draft.sheet.side));
             (crossings.collect(), spans.collect())
         });
-        ends.collect::<Vec<(Vec<Crossing>, Vec<RowSpan>)>>()
+        Some(ends.collect::<Vec<(Vec<Crossing>, Vec<RowSpan>)>>())
     };
     let batches = rows.par_chunks(rows_per_batch(rows.len()));
-    let found: Vec<_> = batches.flat_map_iter(of_batch).collect();
-    for ((index, row), (crossings, spans)) in rows.into_iter().zip(found) {
+    let found: Vec<_> = batches.map(of_batch).collect::<Option<_>>()?;
+    for ((index, row), (crossings, spans)) in rows.into_iter().zip(found.into_iter().flatten()) {
         let sheet = &mut drafts[index].sheet;
         sheet.crossings[row] = crossings;
         sheet.continued[row] = spans;
     }
+    Some(())
 }

@@ -37,6 +37,7 @@ use net::{GuessRow, ValueNet};
 use rayon::prelude::*;
 use samples::SheetSamples;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rod, Side};
 use whiskmap_mechanics::shooting::ShootingMap;
 use whiskmap_mechanics::shooting::batch::Method;
@@ -91,20 +92,27 @@ impl Sheet {
         let request =
             SheetRequest { rod: rod.clone(), side, distances: distances.to_vec(), serves };
         let mut drafts = [SheetDraft::new(method, request)];
-        follow(&mut drafts);
+        // Without a flag that cancels, all rows are followed.
+        let _ = follow(&mut drafts, &AtomicBool::new(false));
         let [draft] = drafts;
         draft.sheet
     }
 
     /// Computes the sheets of several whisker sides by `method`, `[request]`. Rows of all of them that are followed share batches. A sheet does not
-    /// depend on the others.
+    /// depend on the others. If `cancel` is true, the function soon returns `None`.
     #[must_use]
-    pub fn several(method: Method, requests: Vec<SheetRequest>) -> Vec<Self> {
-        let drafts = requests.into_par_iter();
-        let drafts = drafts.map(|request| SheetDraft::new(method, request));
-        let mut drafts: Vec<SheetDraft> = drafts.collect();
-        follow(&mut drafts);
-        drafts.into_iter().map(|draft| draft.sheet).collect()
+    pub fn several(
+        method: Method,
+        requests: Vec<SheetRequest>,
+        cancel: &AtomicBool,
+    ) -> Option<Vec<Self>> {
+        let drafts = requests.into_par_iter().map(|request| {
+            let goes_on = !cancel.load(Ordering::Relaxed);
+            goes_on.then(|| SheetDraft::new(method, request))
+        });
+        let mut drafts: Vec<SheetDraft> = drafts.collect::<Option<_>>()?;
+        follow(&mut drafts, cancel)?;
+        Some(drafts.into_iter().map(|draft| draft.sheet).collect())
     }
 
     /// Returns the fold with the contact at the tip, where slip-off turns into pull-off. Returns `None` if it is not found.

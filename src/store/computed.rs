@@ -14,8 +14,9 @@ use serde_json::{Value, json};
 use std::collections::{BTreeMap, HashMap, VecDeque};
 use std::convert::Infallible;
 use std::fmt;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
 use std::sync::{Mutex, PoisonError};
 use whiskmap_mechanics::numerics::ArithmeticClass;
 
@@ -115,15 +116,16 @@ impl ComputedMap {
     }
 
     /// Returns a channel of some whiskers of the map, which are computed unless they are kept: `[whisker][distance][push_angle]`.
-    /// `on_progress(n)` is called after `n` more cells are finished; if it breaks, the read ends.
+    /// `on_progress(n)` is called after `n` more cells are finished. If `cancel` is true, the read soon ends.
     ///
     /// # Errors
-    /// There is no such channel or whisker, or `on_progress` broke.
+    /// There is no such channel or whisker, or the read is cancelled.
     pub fn read(
         &self,
         name: &str,
         whiskers: &[usize],
-        on_progress: &mut dyn FnMut(usize) -> ControlFlow<()>,
+        on_progress: &mut dyn FnMut(usize),
+        cancel: &AtomicBool,
     ) -> Result<ChannelValues, StoreError> {
         let names = self.channels();
         let channel = names.iter().position(|known| *known == name);
@@ -185,7 +187,7 @@ impl ComputedMap {
             Ok::<(), Infallible>(())
         };
         let engine = solver.engine.as_mut().map(|engine| &mut **engine as _);
-        let Ok(summary) = map::run(&self.scene, &plan, engine, on_progress, &mut keep);
+        let Ok(summary) = map::run(&self.scene, &plan, engine, on_progress, cancel, &mut keep);
         if let Some(failure) = summary.engine_failure {
             solver.engine = None;
             solver.failure = Some(format!("{failure}; the CPU solved the remaining cells"));

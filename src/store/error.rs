@@ -57,7 +57,7 @@ pub enum StoreError {
     /// The folder is a Zarr store of another program; the text names what is missing or different.
     #[error("{folder} is not a store of whiskmap: {1}", folder = .0.display())]
     NotAStore(PathBuf, String),
-    /// The folder has no metadata at its root, so it is not a Zarr store.
+    /// There is no folder with metadata at its root, so it is not a Zarr store.
     #[error("{folder} is not a store: it has no zarr.json; give a folder that `map --format zarr` wrote", folder = .0.display())]
     NoStore(PathBuf),
     /// A file of a block of the store does not exist: it is not computed, or was removed.

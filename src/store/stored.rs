@@ -7,8 +7,9 @@ use crate::plan::Digits;
 use crate::scene::{Grid, Scene, SceneError};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::ops::{ControlFlow, Range};
+use std::ops::Range;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// A map that is open for reading: an EXR file, a Zarr store, or a scene whose map is computed when it is read.
 #[derive(Debug)]
@@ -173,7 +174,7 @@ impl MapSource {
             Self::Zarr(store) => store.read_panels(name, whiskers),
             Self::Computed(map) => {
                 let whiskers: Vec<usize> = whiskers.collect();
-                map.read(name, &whiskers, &mut |_| ControlFlow::Continue(()))
+                map.read(name, &whiskers, &mut |_| {}, &AtomicBool::new(false))
             }
         }
     }

@@ -4,9 +4,10 @@ use super::columns::{StateRow, row};
 use crate::classify::{RowBoundary, TIE};
 use crate::friction::{ContactHistory, Sliding, surely_slides_to_end};
 use crate::scene::{Pole, Whisker};
-use crate::sheet::{Crossing, Edge, Sheet, SheetRequest, SheetUse};
+use crate::sheet::{Crossing, Edge, LevelCurve, Sheet, SheetRequest, SheetUse, rows_per_batch};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::{Rest, Side};
 use whiskmap_mechanics::shooting::batch::{Batch, InitialCondition, Method};
 use whiskmap_mechanics::shooting::{FirstVariation, PeakStrain, Reader, Reading, Resolution};
@@ -117,7 +118,9 @@ fn of_one(
     detail: EndDetail,
 ) -> Vec<Detachment> {
     let pushed = PushedWhisker { whisker, pole, side, distances_mm };
-    detachments(resolution, &[pushed], detail, |_, end, _| end).concat()
+    let never = AtomicBool::new(false);
+    let ends = detachments(resolution, &[pushed], detail, &never, |_, end, _| end);
+    ends.unwrap_or_default().concat()
 }
 
 /// Whisker that is pushed against a pole on one side, from first touch at some distances.
@@ -167,23 +170,24 @@ pub enum EndDetail {
 /// Computes the detachments of each of `pushed` with this `detail`, and returns `keep(index, detachment, crossing)` of each: `[pushed][distance]`.
 /// The crossing is the end of the push; `None` if the push has no end.
 ///
-/// The ends of all whiskers share batches. Results do not depend on the other whiskers.
+/// The ends of all whiskers share batches. Results do not depend on the other whiskers. If `cancel` is true, the function soon returns `None`.
 pub(crate) fn detachments<T: Send>(
     resolution: Resolution,
     pushed: &[PushedWhisker],
     detail: EndDetail,
+    cancel: &AtomicBool,
     keep: impl Fn(usize, Detachment, Option<Crossing>) -> T + Sync,
-) -> Vec<Vec<T>> {
+) -> Option<Vec<Vec<T>>> {
     let method = Method::new(resolution);
     let requests = pushed.iter().map(|pushed| pushed.request(detail));
-    let sheets = Sheet::several(method, requests.collect());
+    let sheets = Sheet::several(method, requests.collect(), cancel)?;
     let row_ends = RowEnd::of(method, &sheets, detail);
     let of_sheet = |(index, (sheet, row_ends)): (usize, (&Sheet, Vec<Result<RowEnd, _>>))| {
         let PushedWhisker { whisker, side, distances_mm, .. } = pushed[index];
         let units = whisker.units();
         let reader = Reader::new(units, &sheet.rod);
         let slidings = match detail {
-            EndDetail::All => slidings(sheet, &row_ends),
+            EndDetail::All => slidings(sheet, &row_ends, cancel)?,
             EndDetail::State | EndDetail::Snaps => vec![None; row_ends.len()],
         };
         let detachment = |(row, row_end): (usize, Result<RowEnd, DetachmentKind>)| {
@@ -214,7 +218,7 @@ pub(crate) fn detachments<T: Send>(
             };
             keep(index, end, Some(row_end.crossing))
         };
-        row_ends.into_iter().enumerate().map(detachment).collect()
+        Some(row_ends.into_iter().enumerate().map(detachment).collect())
     };
     let ends = sheets.par_iter().zip(row_ends).enumerate();
     ends.map(of_sheet).collect()
@@ -301,11 +305,15 @@ pub(crate) fn snaps_deg(sheet: &Sheet, row: usize) -> Option<f64> {
 }
 
 /// Returns the sliding direction of the contact at the detachment of each row of `sheet` by its history, `[row]`; `None` without friction or
-/// an end, and where the history is not found.
-fn slidings(sheet: &Sheet, ends: &[Result<RowEnd, DetachmentKind>]) -> Vec<Option<Sliding>> {
+/// an end, and where the history is not found. If `cancel` is true, the function soon returns `None`.
+fn slidings(
+    sheet: &Sheet,
+    ends: &[Result<RowEnd, DetachmentKind>],
+    cancel: &AtomicBool,
+) -> Option<Vec<Option<Sliding>>> {
     let mut slidings = vec![None; sheet.rows.len()];
     if sheet.rod.friction == 0.0 {
-        return slidings;
+        return Some(slidings);
     }
     let rows = ends.iter().enumerate().filter_map(|(row, end)| {
         let RowEnd { crossing, state, .. } = *end.as_ref().ok()?;
@@ -319,10 +327,21 @@ fn slidings(sheet: &Sheet, ends: &[Result<RowEnd, DetachmentKind>]) -> Vec<Optio
             false => doubtful.push((*row, end.push)),
         }
     }
-    let levels = doubtful.iter().map(|(row, _)| sheet.level(*row));
-    let histories = ContactHistory::of(&levels.collect::<Vec<_>>());
-    for ((row, push), history) in doubtful.into_iter().zip(histories) {
-        slidings[row] = history.and_then(|history| history.sliding_at_end(push));
+    let of_batch = |rows: &[(usize, f64)]| {
+        if cancel.load(Ordering::Relaxed) {
+            return None;
+        }
+        let levels: Vec<LevelCurve> = rows.iter().map(|(row, _)| sheet.level(*row)).collect();
+        let histories = rows.iter().zip(ContactHistory::of(&levels));
+        let known = histories.map(|((row, push), history)| {
+            (*row, history.and_then(|history| history.sliding_at_end(*push)))
+        });
+        Some(known.collect::<Vec<_>>())
+    };
+    let batches = doubtful.par_chunks(rows_per_batch(doubtful.len()));
+    let known: Vec<_> = batches.map(of_batch).collect::<Option<_>>()?;
+    for (row, sliding) in known.into_iter().flatten() {
+        slidings[row] = sliding;
     }
-    slidings
+    Some(slidings)
 }

@@ -16,6 +16,7 @@ use crate::trace::{
     sides_at_once,
 };
 use rayon::prelude::*;
+use std::sync::atomic::AtomicBool;
 use varying::{Varying, moved, varying};
 use whiskmap_mechanics::rod::Side;
 use whiskmap_mechanics::shooting::Resolution;
@@ -130,7 +131,10 @@ impl Draws {
                 distances_mm: distances,
             });
             let keep = |_, end, _| PushEnd::new(&end);
-            detachments(resolution, &pushed.collect::<Vec<_>>(), EndDetail::State, keep)
+            let pushed: Vec<PushedWhisker> = pushed.collect();
+            let never = AtomicBool::new(false);
+            let ends = detachments(resolution, &pushed, EndDetail::State, &never, keep);
+            ends.unwrap_or_default()
         };
         let of_drawn = |drawn: &[(Whisker, Pole)]| {
             let ends = curves(drawn);

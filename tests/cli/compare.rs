@@ -188,6 +188,12 @@ fn other_scenes_and_grids_are_refused() {
         place.map(&[&[&*file], &regime[..]].concat());
         let other = format!("outputs/{name}.exr");
         compare(&place, &["outputs/scene.exr", &other]).assert_refused(&[said]);
+        // Scenes are refused before an engine is opened for them.
+        for first in ["scene.toml", "outputs/scene.exr"] {
+            let run = compare(&place, &[first, &file]);
+            run.assert_refused(&[said]);
+            assert!(!run.err.contains("engine: "), "{run:?}");
+        }
     }
     let same = ["outputs/scene.exr", "outputs/scene.exr"];
     for (within, said) in [

@@ -48,6 +48,11 @@ fn a_value_is_a_line() {
         "{svg}"
     );
     assert_eq!(svg.matches("<circle").count(), 2, "the dot, and its sample in the legend");
+    // Loads have the unit in which they read best, in the legend and on an axis.
+    let load = ["--side", "cb", "--max-force", "2mN", "--plot", "p.svg"];
+    run(&place, &load);
+    let svg = place.text("p.svg");
+    assert!(svg.contains(">2 mN<") && svg.contains("N)<"), "{svg}");
     // The angle in another unit; its sign gives the side.
     for angle in ["20", "20 deg", "20°", "0.3490658503988659rad"] {
         assert_eq!(run(&place, &["--slip-off", angle]).out, found.out, "{angle}");

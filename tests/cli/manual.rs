@@ -35,6 +35,16 @@ fn bash_completes_commands_options_and_values() {
     assert_eq!(completed(&place, &["whiskmap", "map", "--engi"]), ["--engine"]);
     let engines = completed(&place, &["whiskmap", "map", "--engine", ""]);
     assert_eq!(engines, ["auto", "cpu", "spectral", "gpu"]);
+    assert_eq!(completed(&place, &["whiskmap", "man", "cu"]), ["curve"]);
+    for (line, name) in [
+        (&["whiskmap", "map", "--channels", "force"][..], "force_un"),
+        (&["whiskmap", "render", "--channel", "marg"], "margin_deg"),
+        (&["whiskmap", "extract", "--channel", "peak"], "peak_strain"),
+        (&["whiskmap", "design", "--for", "tap"], "taper"),
+        (&["whiskmap", "curve", "--derivatives", "dist"], "distance_mm"),
+    ] {
+        assert_eq!(completed(&place, line), [name], "{line:?}");
+    }
 }
 
 #[test]

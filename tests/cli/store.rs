@@ -255,7 +255,12 @@ fn a_store_is_resumed_with_its_own_settings_only() {
             .assert_refused(&["error: empty is not a store: it has no zarr.json; give a folder"]);
     }
     place.write("zarr.json", "{}");
-    place.run(&["status", "."]).assert_refused(&["is not a store of whiskmap"]);
+    place
+        .run(&["status", "."])
+        .assert_refused(&["is not a store of whiskmap", "`map SCENE --resume`"]);
+    place
+        .run(&["status", "scene.toml"])
+        .assert_refused(&["error: scene.toml is not a store: it has no zarr.json; give a folder"]);
 }
 
 /// Nobody can create files in `/sys`, not even root.

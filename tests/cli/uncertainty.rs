@@ -37,6 +37,18 @@ fn a_spread_is_a_table_and_bands() {
     assert!(svg.contains(">5 to 95 % of samples<") && svg.contains(">25 to 75 % of samples<"));
 }
 
+/// At one distance, a bar shows the range of a band.
+#[test]
+fn a_spread_at_one_distance_has_bars() {
+    let place = uncertain();
+    let plot = ["--samples", "20", "--distance", "12", "--plot", "p.svg"];
+    place.run(&[&["curve", "scene.toml", "--csv", "t.csv"], &plot[..]].concat());
+    let svg = place.text("p.svg");
+    let polygons = svg.lines().filter(|line| line.starts_with("<polygon"));
+    let corners = polygons.map(|line| line.matches(',').count());
+    assert_eq!(corners.collect::<Vec<_>>(), [4; 4], "two sides, two bands: {svg}");
+}
+
 /// One picture has the bands, the points and their error bars; the table has the points, and the percentiles at each.
 #[test]
 fn samples_and_measured_points_share_a_plot() {

@@ -3,7 +3,7 @@
 use crate::compute::{Response, Watched, assert_identical, compute_as, open};
 use crate::shipped;
 use std::convert::Infallible;
-use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 use std::sync::mpsc;
 use std::time::Duration;
 use whiskmap::engine::gpu::{Gpu, Precision};
@@ -66,10 +66,10 @@ fn a_batch_is_solved_while_the_previous_one_is_completed() {
             if completed < AT_ONCE {
                 wait(&calls, completed + 1);
             }
-            ControlFlow::Continue(())
         };
         let discard = &mut |_: &mut Vec<Panel>| Ok::<(), Infallible>(());
-        let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, discard);
+        let never = AtomicBool::new(false);
+        let Ok(_) = map::run(&scene, &plan, Some(&mut engine), &mut one_more, &never, discard);
         assert_eq!(completed, 16);
     });
 }
@@ -137,7 +137,8 @@ fn an_engine_goes_from_run_to_run() {
             &sweep,
             &plan_of_sweep,
             Some(&mut gpu),
-            &mut |_| ControlFlow::Continue(()),
+            &mut |_| {},
+            &AtomicBool::new(false),
             refuse,
         );
         assert_eq!(refused.unwrap_err(), "no room");

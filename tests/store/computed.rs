@@ -1,7 +1,7 @@
 //! Maps that are computed when they are read.
 
 use crate::program::SCENE;
-use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 use whiskmap::scene::Scene;
 use whiskmap::store::{ChannelValues, ComputedMap, StoreError};
 use whiskmap::{Channel, Channels, MapEngine, Options};
@@ -24,10 +24,7 @@ fn options(engine: MapEngine) -> Options {
 /// Reads a channel, and counts the cells that are computed for it.
 fn read(map: &ComputedMap, name: &str, whiskers: &[usize]) -> (ChannelValues, usize) {
     let mut computed = 0;
-    let values = map.read(name, whiskers, &mut |cells| {
-        computed += cells;
-        ControlFlow::Continue(())
-    });
+    let values = map.read(name, whiskers, &mut |cells| computed += cells, &AtomicBool::new(false));
     (values.unwrap(), computed)
 }
 
@@ -73,7 +70,7 @@ fn what_does_not_exist_is_named() {
     options.channels = Some("regime,force_un".parse().unwrap());
     let map = whiskmap::lazy_map(&sweep(), options).unwrap();
     let read = |name: &str, whisker: usize| {
-        let found = map.read(name, &[whisker], &mut |_| ControlFlow::Break(()));
+        let found = map.read(name, &[whisker], &mut |_| {}, &AtomicBool::new(true));
         found.unwrap_err()
     };
     assert_eq!(

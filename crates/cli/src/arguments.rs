@@ -1,10 +1,13 @@
 //! Parsers of argument values, and help texts about columns.
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Arg, Command, Error};
+use std::ffi::OsStr;
 use std::fmt::Write;
 use std::ops::RangeInclusive;
 use whiskmap::Side;
 use whiskmap::input::Quantity;
+use whiskmap::plan::Channels;
 use whiskmap::scene::Parameter;
 
 /// Parses a length in millimetres, or with a unit.
@@ -57,6 +60,46 @@ pub fn parameter() -> impl TypedValueParser<Value = Parameter> {
         let hint = || Parameter::suggested(&name).unwrap_or_default();
         Parameter::named(&name).ok_or_else(|| format!("names a sweep axis{}", hint()))
     })
+}
+
+/// Parser of a text in which names may occur. Shells complete the names, but other texts are parsed, too; with `hide_possible_values`, the help
+/// does not list them.
+#[derive(Clone, Debug)]
+pub struct Completed<P> {
+    parser: P,
+    names: Vec<&'static str>,
+}
+
+/// Returns a `parser` whose values shells complete from `names`.
+pub fn completed<P>(parser: P, names: impl IntoIterator<Item = &'static str>) -> Completed<P> {
+    Completed { parser, names: names.into_iter().collect() }
+}
+
+impl<P: TypedValueParser> TypedValueParser for Completed<P> {
+    type Value = P::Value;
+
+    fn parse_ref(
+        &self,
+        command: &Command,
+        argument: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<Self::Value, Error> {
+        self.parser.parse_ref(command, argument, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.names.iter().map(PossibleValue::new)))
+    }
+}
+
+/// Returns the names of all channels that maps can have.
+pub fn all_channels() -> impl Iterator<Item = &'static str> {
+    Channels::those(|_| true).names().collect::<Vec<_>>().into_iter()
+}
+
+/// Returns the names of the parameters and of `others`.
+pub fn variable_names(others: &[&'static str]) -> impl Iterator<Item = &'static str> {
+    Parameter::ALL.map(Parameter::name).into_iter().chain(others.iter().copied())
 }
 
 /// Returns a parser of the names of `values`, each with its text in `help`.

@@ -10,7 +10,9 @@ use serde_json::{Value, json};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
-use whiskmap::compare::{MapComparison, QuantityComparison, Within, compare};
+use whiskmap::compare::{
+    CompareError, MapComparison, QuantityComparison, Within, check_same, compare,
+};
 use whiskmap::plan::{Channels, Digits};
 use whiskmap::scene::Scene;
 use whiskmap::store::{MapSource, StoreError};
@@ -72,7 +74,7 @@ pub fn run(args: &CompareArgs, files: &mut Files) -> Result<(), Failure> {
     }
 }
 
-/// Opens both maps. For a scene, the channels that the other map has are computed.
+/// Opens both maps. For a scene, the channels that the other map has are computed. Other scenes are refused before an engine is opened.
 fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure> {
     let CompareArgs { first, second, solver, .. } = args;
     let of_scene = |scene: Scene, other: Option<&MapSource>| {
@@ -90,16 +92,25 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
         [false, false] => [stored(files, first, solver)?, stored(files, second, solver)?],
         [false, true] => {
             let stored_map = stored(files, first, &unused)?;
-            let scene_map = of_scene(files.scene(second)?, Some(&stored_map))?;
+            let scene = files.scene(second)?;
+            if let Ok(stored_scene) = stored_map.scene()? {
+                check_same([&stored_scene, &scene]).map_err(CompareError::from)?;
+            }
+            let scene_map = of_scene(scene, Some(&stored_map))?;
             [stored_map, scene_map]
         }
         [true, false] => {
             let stored_map = stored(files, second, &unused)?;
-            let scene_map = of_scene(files.scene(first)?, Some(&stored_map))?;
+            let scene = files.scene(first)?;
+            if let Ok(stored_scene) = stored_map.scene()? {
+                check_same([&scene, &stored_scene]).map_err(CompareError::from)?;
+            }
+            let scene_map = of_scene(scene, Some(&stored_map))?;
             [scene_map, stored_map]
         }
         [true, true] => {
             let scenes = [files.scene(first)?, files.scene(second)?];
+            check_same(scenes.each_ref()).map_err(CompareError::from)?;
             let [first_map, second_map] = scenes.map(|scene| of_scene(scene, None));
             [first_map?, second_map?]
         }

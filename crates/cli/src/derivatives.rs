@@ -1,8 +1,10 @@
 //! Option `--derivatives`: columns with exact derivatives.
 
+use super::arguments::{completed, variable_names};
 use super::failure::Failure;
 use clap::Args;
 use serde::ser::{Serialize, SerializeStruct, Serializer};
+use std::str::FromStr;
 use whiskmap::input::each_once;
 use whiskmap::scene::Scene;
 use whiskmap::sensitivity::{Derivatives, NoDerivative, Variable};
@@ -17,6 +19,8 @@ pub struct DerivativeArgs {
         value_delimiter = ',',
         num_args = 0..,
         require_equals = true,
+        value_parser = completed(Variable::from_str, variable_names(&["distance_mm", "push_angle_deg"])),
+        hide_possible_values = true,
         conflicts_with = "units"
     )]
     derivatives: Option<Vec<Variable>>,

@@ -4,14 +4,12 @@ use super::failure::Failure;
 use super::map_format::MapFormat;
 use std::time::Instant;
 use whiskmap::engine::Engine;
-use whiskmap::map::{self, Panel, Stage, Summary};
+use whiskmap::map::{self, Panel, Stage, Summary, process_seconds};
 use whiskmap::plan::{Plan, SAMPLE_LINES, SAMPLE_VALUES};
 use whiskmap::scene::Scene;
 
 /// Estimated cost of a map without its files.
 pub struct MapCost {
-    /// Elapsed seconds of the map with all threads at work, scaled from samples.
-    pub seconds: f64,
     /// CPU seconds of the map on all threads, scaled from samples. Other load on this machine does not count.
     pub cpu_seconds: f64,
     /// Newton steps per cell of the map, each one trajectory.
@@ -23,8 +21,21 @@ pub struct FileCost {
     pub format: MapFormat,
     /// Size of the files on disk, in bytes.
     pub bytes: f64,
-    /// Elapsed seconds to pack the files with all threads at work, scaled from samples.
-    pub seconds: f64,
+    /// CPU seconds to pack the files on all threads, scaled from samples.
+    pub cpu_seconds: f64,
+}
+
+/// Returns the elapsed seconds of work with these CPU seconds, if no other work is on the cores and all threads of the pool share it.
+pub fn on_idle_cores(cpu_seconds: f64) -> f64 {
+    cpu_seconds / rayon::current_num_threads() as f64
+}
+
+/// CPU seconds of work that began at `start` with `cpu_start`. Where the system has no clock, or one with long steps shows no time, all threads count as
+/// busy.
+fn cpu_seconds_since(start: Instant, cpu_start: Option<f64>) -> f64 {
+    let used = process_seconds().zip(cpu_start).map(|(now, before)| now - before);
+    let elapsed = start.elapsed().as_secs_f64() * rayon::current_num_threads() as f64;
+    used.filter(|used| *used > 0.0).unwrap_or(elapsed)
 }
 
 /// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.
@@ -45,10 +56,11 @@ pub fn file_costs(
     });
     let by_cells = plan.cells as f64 / small_plan.cells as f64;
     let packed = formats.iter().map(|format| {
-        let start = Instant::now();
+        let (start, cpu_start) = (Instant::now(), process_seconds());
         let packed = groups.iter().map(|panels| format.pack(&small, &small_plan, panels));
         let bytes = packed.sum::<u64>() as f64 * by_cells;
-        FileCost { format: *format, bytes, seconds: start.elapsed().as_secs_f64() * by_cells }
+        let cpu_seconds = cpu_seconds_since(start, cpu_start) * by_cells;
+        FileCost { format: *format, bytes, cpu_seconds }
     });
     Ok(packed.collect())
 }
@@ -73,8 +85,9 @@ const DENSER: usize = 2;
 
 /// Estimates the cost of `plan` with an engine, or on the CPU alone, from samples of increasing density.
 ///
-/// The stages of the last sample are scaled: sheets by whiskers, sides and distances, the others by cells. The samples take
-/// about `seconds` together, unless the first one takes longer.
+/// The stages of the densest sample are scaled: sheets by whiskers, sides and distances, the others by cells. It is computed up to three times, of which
+/// the one with the least CPU time counts. The samples take about `seconds` together on idle cores, unless the first one takes longer. Their density
+/// depends on their CPU time alone, because sparse samples cost more by cell: other load on this machine must not change the estimate.
 pub fn estimate(
     scene: &Scene,
     plan: &Plan,
@@ -82,17 +95,31 @@ pub fn estimate(
     seconds: f64,
 ) -> Result<MapCost, Failure> {
     let (mut lines, mut left) = (FIRST_LINES, seconds);
+    let mut found: Vec<MapCost> = Vec::new();
     loop {
-        let start = Instant::now();
+        let (start, cpu_start) = (Instant::now(), process_seconds());
         let sample = MapSample::measure(scene, plan, engine, [lines, lines])?;
-        let last = start.elapsed().as_secs_f64();
+        let last = on_idle_cores(cpu_seconds_since(start, cpu_start));
         left -= last;
+        found.push(sample.scaled_to(scene, plan));
         match denser(lines, last, left) {
-            Some(denser) => lines = denser,
-            None => return Ok(sample.scaled_to(scene, plan)),
+            Some(denser) if found.len() == 1 => {
+                lines = denser;
+                found.clear();
+            }
+            _ if found.len() < SAMPLES && last <= left => {}
+            _ => break,
         }
     }
+    let least = found.into_iter().reduce(|one, other| match one.cpu_seconds <= other.cpu_seconds {
+        true => one,
+        false => other,
+    });
+    least.ok_or_else(|| Failure::Input("no sample was computed".to_owned()))
 }
+
+/// Maximum number of samples of the largest density.
+const SAMPLES: usize = 3;
 
 /// Most push angles of a sample for an engine, whose expansions of a row cost the same for any number of cells in it.
 const WIDE: usize = 2048;
@@ -185,7 +212,6 @@ impl MapSample {
         // Other processes may take the processor between two stages.
         let used = used.map(|cpu| cpu / stages.iter().sum::<f64>());
         MapCost {
-            seconds,
             cpu_seconds: seconds * used.unwrap_or(threads),
             steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
         }

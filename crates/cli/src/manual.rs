@@ -1,7 +1,10 @@
 //! Commands `whiskmap completions` and `whiskmap man`, made from the definitions of the arguments.
 
 use super::Arguments;
+use super::arguments::completed;
 use super::failure::Failure;
+use super::overview::command_names;
+use clap::builder::StringValueParser;
 use clap::{Args, Command, CommandFactory};
 use clap_complete::Shell;
 use clap_mangen::Man;
@@ -31,6 +34,7 @@ Examples:
   whiskmap man curve > ~/.local/share/man/man1/whiskmap-curve.1")]
 pub struct ManArgs {
     /// Command that the page describes [default: the program]
+    #[arg(value_parser = completed(StringValueParser::new(), command_names()), hide_possible_values = true)]
     command: Option<String>,
 }
 

@@ -1,6 +1,6 @@
 //! Command `whiskmap map`.
 
-use super::arguments::{THREADS, whole};
+use super::arguments::{THREADS, all_channels, completed, whole};
 use super::digits::DigitsArgs;
 use super::disk;
 use super::failure::{Failure, message};
@@ -51,7 +51,7 @@ pub struct MapArgs {
     pub threads: Option<u32>,
     /// Compute and store only these channels, separated by commas
     /// [default: all but derivatives, such as d_push_d_taper]
-    #[arg(long, value_name = "LIST", value_parser = Channels::from_str)]
+    #[arg(long, value_name = "LIST", value_parser = completed(Channels::from_str, all_channels()), hide_possible_values = true)]
     channels: Option<Channels>,
     #[command(flatten)]
     digits: DigitsArgs,

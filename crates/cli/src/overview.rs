@@ -50,6 +50,11 @@ pub fn template() -> String {
     template
 }
 
+/// Returns the names of all commands, in the order of the help.
+pub fn command_names() -> impl Iterator<Item = &'static str> {
+    TOPICS.into_iter().flat_map(|(_, names)| names).copied()
+}
+
 /// Returns the definitions of all commands.
 fn commands() -> Definitions {
     Command::augment_subcommands(Definitions::new(""))
@@ -64,8 +69,7 @@ mod tests {
         let commands = commands();
         let mut defined: Vec<&str> =
             commands.get_subcommands().map(Definitions::get_name).collect();
-        let mut listed: Vec<&str> =
-            TOPICS.into_iter().flat_map(|(_, names)| names).copied().collect();
+        let mut listed: Vec<&str> = command_names().collect();
         defined.sort_unstable();
         listed.sort_unstable();
         assert_eq!(listed, defined);

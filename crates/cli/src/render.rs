@@ -1,6 +1,6 @@
 //! Command `whiskmap render`.
 
-use super::arguments::whole;
+use super::arguments::{all_channels, completed, whole};
 use super::failure::{Failure, message};
 use super::files::{Files, STDOUT};
 use super::outputs::PictureFile;
@@ -9,6 +9,7 @@ use super::size::SizeArgs;
 use super::solver::SolverArgs;
 use super::source::warn;
 use clap::Args;
+use clap::builder::StringValueParser;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 use whiskmap::input::Quantity;
@@ -40,7 +41,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     selection: SelectionArgs,
     /// Draw this channel with a colour bar [default: the regimes]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = completed(StringValueParser::new(), all_channels()), hide_possible_values = true)]
     channel: Option<String>,
     /// Use a logarithmic scale from the 1st percentile of the values above 0; cells at or below 0 stay blank, and moments have their size [default: for loads and
     /// energies that span more than two decades]

@@ -5,7 +5,7 @@ use super::failure::{Failure, message};
 use super::progress::Progress;
 use super::tolerance::ToleranceArgs;
 use clap::Args;
-use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
 use whiskmap::compute::PlannedMap;
 use whiskmap::engine::Engine;
 use whiskmap::map::{self, Panel, Summary};
@@ -63,11 +63,9 @@ pub fn compute(
 ) -> Result<Summary, Failure> {
     let engine = engine.as_mut().map(|engine| &mut **engine as _);
     let bar = Progress::over(plan.cells_of_parts(), "cells");
-    let mut on_progress = |cells| {
-        bar.inc(cells);
-        ControlFlow::Continue(())
-    };
-    let result = map::run(scene, plan, engine, &mut on_progress, &mut keep);
+    // A signal ends the process.
+    let never = AtomicBool::new(false);
+    let result = map::run(scene, plan, engine, &mut |cells| bar.inc(cells), &never, &mut keep);
     bar.finish();
     let summary = result?;
     if let Some(failure) = &summary.engine_failure {

@@ -86,7 +86,7 @@ impl StoreBlocks {
 }
 
 pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure> {
-    let store = ZarrStore::open(&args.store)?;
+    let store = ZarrStore::open(&args.store).map_err(unreadable)?;
     let is_thorough = args.verify || args.repair;
     let depth = if is_thorough { CheckDepth::Values } else { CheckDepth::Structure };
     let metadata = match store.metadata_faults() {
@@ -109,6 +109,16 @@ pub fn run(args: &StatusArgs, temporary: &TemporaryFiles) -> Result<(), Failure>
         return Ok(());
     }
     Err(Failure::Incomplete { store: args.store.clone(), missing, damaged, metadata })
+}
+
+/// Returns the failure of a store that cannot be opened, with what may repair its root.
+fn unreadable(why: StoreError) -> Failure {
+    match why {
+        StoreError::NotAStore(..) | StoreError::Damaged(..) => Failure::Input(format!(
+            "{why}; if `map` wrote the folder, `map SCENE --resume` with the same options rewrites its zarr.json"
+        )),
+        why => why.into(),
+    }
 }
 
 fn report(store: &ZarrStore, found: &StoreBlocks) -> Result<(), Failure> {

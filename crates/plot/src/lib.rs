@@ -40,6 +40,7 @@ mod picture;
 pub use chart::{Band, Chart, Disc, Dot, Ink, Inset, Line, Note, Plot, Shade, Stroke};
 pub use frame::heading::LegendEntry;
 pub use frame::regions::Region;
+pub use frame::units::readable_value;
 pub use heat_map::cell_axis::CellAxis;
 pub use heat_map::colour_scale::{ColourScale, ScaleError, ScaleOptions};
 pub use heat_map::summary::ValueSummary;

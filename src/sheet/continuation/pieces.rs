@@ -8,6 +8,7 @@ use crate::sheet::continuation::{NODE_MISS, continuations};
 use crate::sheet::fold::{FoldPoint, first_folds};
 use crate::sheet::row::{Crossing, Edge};
 use crate::sheet::span::{RowSpan, SpanNode};
+use std::sync::atomic::{AtomicBool, Ordering};
 use whiskmap_mechanics::rod::Side;
 
 /// Stable piece of a row: a part of its level curve on the stable sheet, in the direction of growing push angles.
@@ -71,11 +72,15 @@ impl StablePieces {
     }
 }
 
-/// Returns the wanted stable pieces of each of the `rows`, `[row]`. Their trajectories share batches. Results do not depend on the other rows.
-pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
+/// Returns the wanted stable pieces of each of the `rows`, `[row]`. Their trajectories share batches. Results do not depend on the other rows. If
+/// `cancel` is true, the function soon returns `None`.
+pub fn stable_pieces(rows: &[ContinuedRow], cancel: &AtomicBool) -> Option<Vec<StablePieces>> {
+    let go_on = || (!cancel.load(Ordering::Relaxed)).then_some(());
+    go_on()?;
     let mut found: Vec<StablePieces> = from_touch(rows);
     let most = rows.iter().map(|row| row.crossings.len()).max();
     for index in 0..most.unwrap_or_default() {
+        go_on()?;
         let crossings: Vec<Option<Crossing>> = rows
             .iter()
             .zip(&found)
@@ -90,8 +95,9 @@ pub fn stable_pieces(rows: &[ContinuedRow]) -> Vec<StablePieces> {
             .collect();
         through_crossings(rows, &crossings, &mut found);
     }
+    go_on()?;
     past_folds(rows, &mut found);
-    found
+    Some(found)
 }
 
 /// Crossing at which a piece ends, and the nodes of the piece.

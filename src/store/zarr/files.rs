@@ -112,7 +112,10 @@ pub(super) fn attributes(path: &Path) -> Result<Map<String, Value>, StoreError> 
     let foreign =
         |why: &dyn std::fmt::Display| StoreError::NotAStore(path.to_owned(), why.to_string());
     let mut text = Vec::new();
-    fs::metadata(path).map_err(StoreError::at(path, StoreError::Read))?;
+    let found = fs::metadata(path).map_err(StoreError::at(path, StoreError::Read))?;
+    if !found.is_dir() {
+        return Err(StoreError::NoStore(path.to_owned()));
+    }
     let source = open_regular(&file).map_err(|why| match why {
         StoreError::NotComputed(_) => StoreError::NoStore(path.to_owned()),
         why => why,

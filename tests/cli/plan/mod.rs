@@ -92,3 +92,20 @@ fn standard_input_and_refused_scenes() {
     assert_eq!(run.code, Some(0), "{run:?}");
     assert!(run.out.starts_with("A straight cylinder\n"), "{run:?}");
 }
+
+/// Seconds are CPU time by threads, so that they agree with the CPU-hours on a busy machine, too. Both have two digits.
+#[test]
+fn seconds_and_cpu_hours_are_one_time() {
+    let place = Place::with(SCENE);
+    for threads in [1.0, 2.0] {
+        let run = plan_with(&place, &["--engine", "cpu", "--threads", &threads.to_string()]);
+        let numbers: Vec<f64> = fact(&run, "time").split([' ', ',']).flat_map(str::parse).collect();
+        let [seconds, found, hours] = numbers[..] else {
+            panic!("{run:?}");
+        };
+        assert_eq!(found, threads);
+        let ratio = seconds * threads / (3600.0 * hours);
+        // The last digits of 10 and of 1.0 are off by up to 5 % each.
+        assert!((0.9..1.11).contains(&ratio), "{ratio} {run:?}");
+    }
+}

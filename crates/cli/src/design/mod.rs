@@ -4,7 +4,7 @@ mod messages;
 mod options;
 mod solutions;
 
-use super::arguments::side;
+use super::arguments::{completed, side, variable_names};
 use super::failure::Failure;
 use super::files::Files;
 use super::outputs::{PictureFile, PlotArgs, write};
@@ -55,7 +55,7 @@ pub struct DesignArgs {
     #[command(flatten)]
     goal: GoalArgs,
     /// Parameters of the scene to vary, separated by commas, or distance_mm; NAME=FROM..TO keeps within limits
-    #[arg(long = "for", value_name = "NAMES", required = true, value_delimiter = ',', value_parser = variable)]
+    #[arg(long = "for", value_name = "NAMES", required = true, value_delimiter = ',', value_parser = completed(variable, variable_names(&["distance_mm"])), hide_possible_values = true)]
     varied: Vec<DesignVariable>,
     /// Keep the taper where a radius varies, instead of the radius at the tip
     #[arg(long, value_name = "taper", value_parser = ["taper"])]

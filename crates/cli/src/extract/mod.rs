@@ -5,12 +5,14 @@ mod table;
 
 use self::array::array;
 use self::table::table;
+use super::arguments::{all_channels, completed};
 use super::failure::Failure;
 use super::files::{Files, unwritten};
 use super::selection::{SelectionArgs, channels};
 use super::solver::SolverArgs;
 use super::source::warn;
 use clap::Args;
+use clap::builder::StringValueParser;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use whiskmap::engine;
@@ -40,7 +42,7 @@ pub struct ExtractArgs {
     #[command(flatten)]
     selection: SelectionArgs,
     /// Extract this channel; may be repeated [default: all]
-    #[arg(long, value_name = "NAME")]
+    #[arg(long, value_name = "NAME", value_parser = completed(StringValueParser::new(), all_channels()), hide_possible_values = true)]
     channel: Vec<String>,
     /// Write FILE; the ending selects a table (.csv), an array of one channel (.npy), a store (.zarr) or a map (.exr)
     #[arg(short, long, value_name = "FILE")]

@@ -32,8 +32,9 @@ call into submissions according to its speed.
 Trajectories of cells, seconds and bytes are scaled up from samples: at most 128 x 128 cells (for the bytes, about 2^18 in \
 all) and two values per sweep axis, fewer if these would take more than some seconds. They are computed and packed on this \
 machine's CPU and discarded. Nothing is written and no GPU is opened: with --engine gpu, the seconds are those of the CPU \
-engine. Seconds are wall seconds on all threads. The seconds of a file are the additional time for packing, without its \
-picture and without the disk. CPU-hours are CPU seconds of the samples: other load on this machine makes seconds longer, not CPU-hours. Finished blocks of a store are not subtracted.")]
+engine. CPU-hours are scaled from the CPU time of the samples, so that other load on this machine hardly changes them. Seconds are the same \
+CPU time divided by the threads: they assume idle cores, one for each thread. The seconds of a file are the additional time for packing, without its \
+picture and without the disk. Finished blocks of a store are not subtracted.")]
 pub struct PlanArgs {
     #[command(flatten)]
     pub map: MapArgs,
@@ -84,10 +85,9 @@ impl PlanEstimate {
     pub fn share(&self, whiskers: usize) -> [f64; 2] {
         let share = whiskers as f64 / self.plan.whiskers as f64;
         let file = self.files.first();
-        let packing = file.map_or(0.0, |file| file.seconds);
-        let threads = rayon::current_num_threads() as f64;
+        let packing = file.map_or(0.0, |file| file.cpu_seconds);
         let bytes = file.map_or(0.0, |file| file.bytes);
-        [self.cost.cpu_seconds + packing * threads, bytes].map(|all| all * share)
+        [self.cost.cpu_seconds + packing, bytes].map(|all| all * share)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Text of `whiskmap plan`.
 
+use super::super::estimate::on_idle_cores;
 use super::super::failure::Failure;
 use super::super::map_format::MapFormat;
 use super::super::sharded::ShardShare;
@@ -56,7 +57,8 @@ pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
     if estimate.may_use_gpu {
         print_gpu(&mut out, plan, distances)?;
     }
-    let (seconds, threads) = (two_digits(cost.seconds), rayon::current_num_threads());
+    let (seconds, threads) =
+        (two_digits(on_idle_cores(cost.cpu_seconds)), rayon::current_num_threads());
     let (on, hours) = (counted(threads, "thread"), significant(cost.cpu_seconds / 3600.0));
     writeln!(out, "time          about {seconds} s on {on}, {hours} CPU-hours, without the files")?;
     for file in &estimate.files {
@@ -64,7 +66,8 @@ pub fn print(scene: &Scene, estimate: &PlanEstimate) -> Result<(), Failure> {
             MapFormat::Exr => "EXR file",
             MapFormat::Zarr => "Zarr store",
         };
-        let (bytes, seconds) = (DecimalBytes(file.bytes as u64), two_digits(file.seconds));
+        let (bytes, seconds) =
+            (DecimalBytes(file.bytes as u64), two_digits(on_idle_cores(file.cpu_seconds)));
         let memory = mib(memory(&file.format.plan(scene)?, threads));
         writeln!(
             out,

@@ -164,7 +164,7 @@ pub enum Shade {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Band {
     /// Points of the band, each `[x, y]` on one curve and `[x, y]` on the other, in data units. Points that are not finite, or beyond
-    /// 1e300, break the band.
+    /// 1e300, break the band. A band of one point is drawn as a bar.
     pub points: Vec<[[f64; 2]; 2]>,
     /// Grey of the band: light or dark.
     pub shade: Shade,

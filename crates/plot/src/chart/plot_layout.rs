@@ -16,11 +16,19 @@ use std::borrow::Cow;
 /// Width of the white ring around a dot.
 const RING: f64 = 2.0;
 
+/// Half the width of the bar of a band of one point: more than the radius of a dot.
+const BAR: f64 = 12.0;
+
 const fn ground(shade: Shade) -> Rgb {
     match shade {
         Shade::Light => SHADE_LIGHT,
         Shade::Dark => SHADE_DARK,
     }
+}
+
+/// The middle of a range.
+fn middle([low, high]: [f64; 2]) -> f64 {
+    0.5 * low + 0.5 * high
 }
 
 /// The pen of an open dot.
@@ -45,16 +53,28 @@ impl<'a> PlotLayout<'a> {
             _ => Cow::Owned(plot.logarithms()),
         };
         let window = Window::of(&plot, size);
-        // The unit of numbers that span many is left alone.
-        let [x, y] = [0, 1].map(|axis| -> (TickChooser, f64) {
+        let choose = [0, 1].map(|axis| -> TickChooser {
             match plot.logarithmic[axis] {
-                true => (ticks::of_logarithms, 0.0),
-                false => (ticks::of_numbers, window.largest[axis]),
+                true => ticks::of_logarithms,
+                false => ticks::of_numbers,
             }
         });
-        let (x_label, x_unit) = units::readable(&plot.x_label, x.1);
-        let (y_label, y_unit) = units::readable(&plot.y_label, y.1);
-        let mut x_ticks = ticks::across(window.x.map(|end| end / x_unit), size[0], x.0);
+        let [(x_label, x_range), (y_label, y_range)] = [0, 1].map(|axis| {
+            let label = [&plot.x_label, &plot.y_label][axis];
+            let range = [window.x, window.y][axis];
+            match plot.logarithmic[axis] {
+                // Numbers span many units: the one in the middle of the axis.
+                true => {
+                    let (label, unit) = units::readable(label, 10_f64.powf(middle(range)));
+                    (label, range.map(|end| end - unit.log10()))
+                }
+                false => {
+                    let (label, unit) = units::readable(label, window.largest[axis]);
+                    (label, range.map(|end| end / unit))
+                }
+            }
+        });
+        let mut x_ticks = ticks::across(x_range, size[0], choose[0]);
         let x_label = match plot.is_above {
             true => String::new(),
             false => x_label,
@@ -63,7 +83,7 @@ impl<'a> PlotLayout<'a> {
             x_ticks.iter_mut().for_each(Tick::clear);
         }
         let y_ticks = match &*plot.y_names {
-            [] => ticks::upwards(window.y.map(|end| end / y_unit), size[1], y.0),
+            [] => ticks::upwards(y_range, size[1], choose[1]),
             names => ticks::named(names, window.y),
         };
         let axes = Axes::new([(x_ticks, &x_label), (y_ticks, &y_label)], size, spacing);
@@ -149,8 +169,25 @@ impl<'a> PlotLayout<'a> {
     }
 }
 
-/// Draws the stretches of a band between points that cannot be drawn.
+/// Draws the stretches of a band between points that cannot be drawn, or the bar of its only point.
 fn draw_band(picture: &mut Picture, viewport: &Viewport, band: &Band) {
+    if let [edges] = band.points[..]
+        && drawable_span(edges)
+    {
+        let [[x, y], [to_x, to_y]] = edges.map(|edge| viewport.place(edge));
+        let part = BAR / (to_x - x).hypot(to_y - y);
+        if part.is_finite() {
+            let [across_x, across_y] = [part * (y - to_y), part * (to_x - x)];
+            let corners = [
+                [x + across_x, y + across_y],
+                [to_x + across_x, to_y + across_y],
+                [to_x - across_x, to_y - across_y],
+                [x - across_x, y - across_y],
+            ];
+            picture.polygon(corners.to_vec(), ground(band.shade));
+        }
+        return;
+    }
     for stretch in band.points.split(|point| !drawable_span(*point)) {
         let [low, high] = viewport.window.y;
         let inside = |[x, y]: [f64; 2]| [x, y.clamp(low, high)];

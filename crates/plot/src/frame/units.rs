@@ -8,6 +8,14 @@ const LADDERS: [&[(&str, i32)]; 4] = [
     &[("nJ", -9), ("\u{b5}J", -6), ("mJ", -3), ("J", 0)],
 ];
 
+/// Converts a `value` in a `unit` such as `µN` to the largest unit that does not exceed its magnitude. Returns the new value, and its unit. A value in
+/// an unknown unit stays as it is.
+#[must_use]
+pub fn readable_value(value: f64, unit: &str) -> (f64, String) {
+    let (label, factor) = readable(&format!("({unit})"), value.abs());
+    (value / factor, label[1..label.len() - 1].to_owned())
+}
+
 /// Replaces the unit in a label such as `force (µN)` by the largest unit that does not exceed `largest`. Returns the label, and the new
 /// unit in old units. A label without a known unit stays as it is, and so does the label of numbers that are all 0.
 pub fn readable(label: &str, largest: f64) -> (String, f64) {

@@ -125,7 +125,7 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     for text in ["0.1", "1", "10", "1e\u{2212}8", "1e\u{2212}5", "0.01"] {
         assert!(document.contains(&format!(">{text}<")), "{text}");
     }
-    // The unit of numbers that span many is left alone.
+    // The middle of the axis is 1 mm.
     assert!(document.contains(">time (mm)<"));
     let places = |svg: &str| polylines(svg)[0].0.clone();
     let [left, middle, right] = places(&document)[..] else {
@@ -141,6 +141,24 @@ fn logarithmic_axes_are_labelled_with_the_numbers_themselves() {
     more.discs = vec![Disc { centre: [1e9, 1.0], radius: 1e8, dark: true }];
     more.dots = vec![Dot { at: [1.0, -1.0], ..Dot::default() }];
     assert_eq!(svg(&single(more).picture(PictureSize::Natural).unwrap()), document);
+}
+
+/// Moments from 1e4 to 1e9 nN m are shown in mN m, as their middle is 3 mN m.
+#[test]
+fn logarithmic_axes_have_the_unit_of_their_middle() {
+    let document = svg(&single(Plot {
+        y_label: "moment (nN m)".to_owned(),
+        lines: vec![line(&[[1.0, 1e4], [2.0, 1e9]], Ink::Black, Stroke::Solid)],
+        logarithmic: [false, true],
+        ..Plot::default()
+    })
+    .picture(PictureSize::Natural)
+    .unwrap());
+    for text in ["moment (mN m)", "0.01", "0.1", "1", "10", "100", "1000"] {
+        assert!(document.contains(&format!(">{text}<")), "{text}: {document}");
+    }
+    assert_eq!(whiskmap_plot::readable_value(2e7, "nN m"), (20.0, "mN m".to_owned()));
+    assert_eq!(whiskmap_plot::readable_value(-2.0, "deg"), (-2.0, "deg".to_owned()));
 }
 
 /// Powers of ten where there are some, and never two labels on each other.

@@ -59,3 +59,29 @@ fn a_band_is_where_its_numbers_are() {
     assert_eq!(svg.matches(">band of 10<").count(), 1);
     assert_eq!(svg.matches(">band of 5<").count(), 1);
 }
+
+/// A band of one point has no area: a bar shows its range.
+#[test]
+fn a_band_of_one_point_is_a_bar() {
+    let band = |half: f64, shade| Band {
+        points: vec![[[10.0 - half, 5.0], [10.0 + half, 5.0]]],
+        shade,
+        name: None,
+    };
+    let (svg, picture) = both(&single(Plot {
+        bands: vec![band(10.0, Shade::Light), band(5.0, Shade::Dark)],
+        ..Plot::default()
+    }));
+    let [left, top, right, bottom] = frame(&svg);
+    // The data take 1 of 1.08 parts of the axis, and all have one height.
+    let place = |x: f64| [left + (right - left) * (x / 20.0 + 0.04) / 1.08, 0.5 * (top + bottom)];
+    for (x, colour) in [(1.0, LIGHT), (6.0, DARK), (10.0, DARK), (14.0, DARK), (19.0, LIGHT)] {
+        assert_eq!(picture.at(place(x)), colour, "{x}");
+    }
+    assert_eq!(picture.at([place(10.0)[0], 0.5 * (top + bottom) - 20.0]), WHITE);
+    // A bar ends where its range does.
+    let colours = [(-0.1, WHITE), (0.1, LIGHT), (4.9, LIGHT), (5.1, DARK), (20.1, WHITE)];
+    for (x, colour) in colours {
+        assert_eq!(picture.at(place(x)), colour, "{x}");
+    }
+}
