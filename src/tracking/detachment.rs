@@ -89,7 +89,7 @@ impl Film<'_> {
     /// Returns the pole's centre in a frame, seen from the base and its tangent, in mm.
     fn pole_mm(&self, frame: usize) -> Option<DVec2> {
         let CurvedFrame { curve, pole_mm, .. } = &self.curves[frame];
-        Some(curve.as_ref().ok()?.from_base((*pole_mm)?))
+        Some(curve.as_ref().ok()?.seen_from_base((*pole_mm)?))
     }
 
     /// Returns the detachment after a contact that begins with frame `touch` and ends before frame `end`. The push turns the pole, as seen from the

@@ -199,7 +199,7 @@ impl FrameCurve {
     }
 
     /// Returns a point in the frame of the base, in mm.
-    pub fn from_base(&self, point_mm: [f64; 2]) -> DVec2 {
+    pub fn seen_from_base(&self, point_mm: [f64; 2]) -> DVec2 {
         DVec2::from_angle(-self.angle()).rotate(DVec2::from(point_mm) - self.base_mm())
     }
 
