@@ -7,7 +7,7 @@ target="$(realpath -m "${CARGO_TARGET_DIR:-../target}")"
 environment="$target/python-environment"
 [ -x "$environment/bin/python" ] || python3 -m venv "$environment"
 "$environment/bin/pip" install -q --disable-pip-version-check \
-    'maturin>=1.9.4,<2' 'dask[array]' ipykernel jupytext matplotlib mypy nbconvert numpy pandas pynwb pytest scipy tqdm types-tqdm xarray zarr >&2
+    'maturin>=1.9.4,<2' 'dask[array]' ipykernel jupytext matplotlib mypy nbconvert numpy pandas pynwb pytest pytest-xdist scipy tqdm types-tqdm xarray zarr >&2
 # Its dependencies are trackers, of which the type of tables in NWB files needs none.
 "$environment/bin/pip" install -q --disable-pip-version-check --no-deps ndx-whisk >&2
 rm -rf "$target/wheels"

@@ -30,6 +30,8 @@ cargo clippy -p whiskmap --lib --no-default-features --profile checked --locked 
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps "${packages[@]}" "${options[@]}"
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
+# Some tests wait for processes and files: one thread more than cores keeps all cores busy.
+export RUST_TEST_THREADS="${RUST_TEST_THREADS:-$(($(getconf _NPROCESSORS_ONLN) + 1))}"
 cargo test "${packages[@]}" "${options[@]}" --no-fail-fast | tee "$log"
 if grep -E '^test .* \.\.\. ignored' "$log"; then
     echo "error: tests were ignored, for the reasons above; all tests must run" >&2

@@ -5,5 +5,5 @@ cd "$(dirname "$0")"
 environment="$(../install.sh)"
 target="$(dirname "$environment")"
 export MYPY_CACHE_DIR="$target/mypy" PYTHONDONTWRITEBYTECODE=1 WHISKMAP_WHEEL="$(echo "$target"/wheels/*.whl)"
-"$environment/bin/pytest" -q -p no:cacheprovider .
+"$environment/bin/pytest" -q -p no:cacheprovider -n auto --dist worksteal .
 ../examples/run.sh

@@ -53,7 +53,7 @@ row! {
         pub energy_nj: f64 = load,
         pub peak_strain: f64,
         pub peak_strain_mm: f64,
-        /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base), where F is the normal part of the contact force: 0 at a fold.
+        /// Determinant of d(D, phi)/d(s_obj, f) with f = F L^2/(E I_base): 0 at a fold.
         pub det: f64,
         /// Mark: first-touch; slip-off, pull-off (stable); second-fold, tip (unstable).
         pub mark: Option<BranchMark>,
