@@ -30,12 +30,20 @@ pub fn on_idle_cores(cpu_seconds: f64) -> f64 {
     cpu_seconds / rayon::current_num_threads() as f64
 }
 
-/// CPU seconds of work that began at `start` with `cpu_start`. Where the system has no clock, or one with long steps shows no time, all threads count as
-/// busy.
+/// Shortest work, in elapsed seconds, whose CPU time counts: the system may add that of running threads at its ticks only.
+const MANY_TICKS: f64 = 0.05;
+
+/// CPU seconds of work that took `elapsed` seconds, as the clock of the system shows them in `used`. For short work, and where the system has no clock,
+/// all threads count as busy.
+fn cpu_seconds_of(elapsed: f64, used: Option<f64>) -> f64 {
+    let used = used.filter(|used| elapsed > MANY_TICKS && *used > 0.0);
+    used.unwrap_or(elapsed * rayon::current_num_threads() as f64)
+}
+
+/// CPU seconds of work that began at `start` with `cpu_start`.
 fn cpu_seconds_since(start: Instant, cpu_start: Option<f64>) -> f64 {
     let used = process_seconds().zip(cpu_start).map(|(now, before)| now - before);
-    let elapsed = start.elapsed().as_secs_f64() * rayon::current_num_threads() as f64;
-    used.filter(|used| *used > 0.0).unwrap_or(elapsed)
+    cpu_seconds_of(start.elapsed().as_secs_f64(), used)
 }
 
 /// Approximate number of cells of the packed sample. It has many lines, because denser cells pack better.
@@ -205,14 +213,12 @@ impl MapSample {
             _ => self.summary.stage_seconds(stage) * self.by_cells(plan),
         });
         let seconds: f64 = scaled.iter().sum();
-        let stages = Stage::ALL.map(|(stage, _)| self.summary.stage_seconds(stage));
-        let threads = rayon::current_num_threads() as f64;
-        // A clock with long steps may show no CPU time.
-        let used = self.summary.cpu_seconds.filter(|cpu| *cpu > 0.0);
         // Other processes may take the processor between two stages.
-        let used = used.map(|cpu| cpu / stages.iter().sum::<f64>());
+        let stages = Stage::ALL.map(|(stage, _)| self.summary.stage_seconds(stage));
+        let elapsed: f64 = stages.iter().sum();
+        let busy_threads = cpu_seconds_of(elapsed, self.summary.cpu_seconds) / elapsed;
         MapCost {
-            cpu_seconds: seconds * used.unwrap_or(threads),
+            cpu_seconds: seconds * busy_threads,
             steps_per_cell: self.summary.steps as f64 / self.summary.cells() as f64,
         }
     }

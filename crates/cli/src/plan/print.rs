@@ -141,10 +141,9 @@ fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{ending}")
 }
 
-/// Formats a positive number with two digits, at most four of them after the point.
+/// Formats a number with two significant digits, or with all digits before the point.
 fn two_digits(x: f64) -> String {
-    let digits = (1.0 - x.log10().floor()).clamp(0.0, 4.0);
-    format!("{x:.*}", digits as usize)
+    if x < 100.0 { significant(x) } else { format!("{x:.0}") }
 }
 
 /// Formats a number with two significant digits, however small it is.
