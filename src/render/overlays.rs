@@ -54,11 +54,11 @@ pub fn bands(rows: &[EndSpread], percentiles: fn(&EndSpread) -> [Option<f64>; 4]
                 let ends = ends.map(|end| all[end].unwrap_or(f64::NAN));
                 ends.map(|end| [end, row.distance_mm])
             };
-            bands.push(Band {
-                points: side.iter().map(point).collect(),
-                shade,
-                name: Some(name.to_owned()),
-            });
+            let points: Vec<[[f64; 2]; 2]> = side.iter().map(point).collect();
+            // Rows out of reach have no percentiles.
+            if points.iter().any(|[low, high]| low[0].is_finite() && high[0].is_finite()) {
+                bands.push(Band { points, shade, name: Some(name.to_owned()) });
+            }
         }
     }
     bands

@@ -47,6 +47,11 @@ fn a_spread_at_one_distance_has_bars() {
     let polygons = svg.lines().filter(|line| line.starts_with("<polygon"));
     let corners = polygons.map(|line| line.matches(',').count());
     assert_eq!(corners.collect::<Vec<_>>(), [4; 4], "two sides, two bands: {svg}");
+    // Out of reach, there is nothing to draw.
+    let far = ["--samples", "20", "--distance", "50", "--plot", "p.svg"];
+    let run = place.run(&[&["curve", "scene.toml", "--csv", "t.csv"], &far[..]].concat());
+    assert!(run.err.contains("warning: the picture is empty"), "{run:?}");
+    assert!(!place.text("p.svg").contains("of samples"));
 }
 
 /// One picture has the bands, the points and their error bars; the table has the points, and the percentiles at each.
