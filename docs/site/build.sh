@@ -3,10 +3,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/../.."
 target="$(realpath -m "${CARGO_TARGET_DIR:-target}")"
-environment="$target/site-environment"
-[ -x "$environment/bin/python" ] || python3 -m venv "$environment"
-"$environment/bin/pip" install -q --disable-pip-version-check \
-    jupytext 'mkdocs>=1.6,<2' mkdocs-jupyter 'mkdocs-material>=9,<10' 'mkdocstrings[python]>=1,<2' ruff
+environment="$(docs/site/environment.sh)"
 
 # The pages in the folders of the repository, so that links between them and to pictures work as they do there.
 export WHISKMAP_SITE_PAGES="$target/site-pages" WHISKMAP_SITE="$target/site"
@@ -30,7 +27,8 @@ WHISKMAP_SITE_RUST=https://docs.rs/whiskmap
 [ ! -d "$target/doc/whiskmap" ] || WHISKMAP_SITE_RUST=rust/whiskmap/index.html
 export WHISKMAP_SITE_RUST
 # With `--quiet`, warnings would not count as errors.
-export NO_MKDOCS_2_WARNING=1 PYTHONDONTWRITEBYTECODE=1
+unset PYTHONDONTWRITEBYTECODE
+export NO_MKDOCS_2_WARNING=1 PYTHONPYCACHEPREFIX="$target/pycache"
 if ! log="$("$environment/bin/mkdocs" build --strict --config-file docs/site/mkdocs.yml 2>&1)"; then
     echo "$log" >&2
     exit 1

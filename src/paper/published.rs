@@ -14,7 +14,7 @@ pub fn checks() -> Vec<Check> {
     let mut checks: Vec<Check> = Side::BOTH
         .map(|side| {
             let distance = Some(pole_distance_mm(&CONE, side));
-            let case = format!("Fig. 3, cone {}", name(side));
+            let case = format!("Fig. 3, cone {side}");
             near(case, "first touch (mm)", PAPER, (15.7, 0.05), distance)
         })
         .into();
@@ -60,7 +60,7 @@ pub fn checks() -> Vec<Check> {
     ]);
     // The paper has both beyond 90; AUTO's 89.22 for CB agrees with ours.
     checks.extend(Side::BOTH.map(|side| Check {
-        case: format!("cylinder {}, touched at 10 mm", name(side)),
+        case: format!("cylinder {side}, touched at 10 mm"),
         quantity: "slip-off, magnitude (deg)",
         source: PAPER,
         expected: ExpectedNumber::Above(90.0),
@@ -69,13 +69,6 @@ pub fn checks() -> Vec<Check> {
     }));
     checks.extend(friction());
     checks
-}
-
-const fn name(side: Side) -> &'static str {
-    match side {
-        Side::Cb => "CB",
-        Side::Cf => "CF",
-    }
 }
 
 fn push_if(kind: DetachmentKind, end: &Detachment) -> Option<f64> {

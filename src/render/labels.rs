@@ -2,7 +2,6 @@
 
 use crate::plan::channels::CHANNELS;
 use crate::scene::{Parameter, SweepVariable};
-use whiskmap_mechanics::rod::Side;
 use whiskmap_plot::Region;
 
 /// Label of the axis of push angles.
@@ -32,14 +31,6 @@ pub fn regions(is_straight: bool) -> [Region; 2] {
         false => [["concave forward (CF)", "CF"], ["concave backward (CB)", "CB"]],
     };
     names.map(|[name, short]| Region { name: name.to_owned(), short: short.to_owned() })
-}
-
-/// Returns the short name of a side.
-pub const fn side(side: Side) -> &'static str {
-    match side {
-        Side::Cb => "CB",
-        Side::Cf => "CF",
-    }
 }
 
 /// Returns the label of a parameter.

@@ -33,7 +33,7 @@ pub fn sensitivities(effects: &[VariableEffect]) -> Plot {
         Some(Band {
             points: vec![edge(row - HALF), edge(row + HALF)],
             shade,
-            name: Some(format!("{} push", labels::side(effect.side))),
+            name: Some(format!("{} push", effect.side)),
         })
     };
     Plot {

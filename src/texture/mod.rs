@@ -85,7 +85,7 @@ pub enum TextureError {
         touches_deg: [f64; 2],
     },
     /// The end of the push against an asperity was not found on this side.
-    #[error("the detachment from asperity {asperity} on {side:?} was not found")]
+    #[error("the detachment from asperity {asperity} on {side} was not found")]
     Unresolved {
         /// Number of the asperity on its surface.
         asperity: usize,

@@ -26,7 +26,7 @@ row! {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum NoCorner {
-    /// No corner exists: every push that begins ends at the fold, as with a perfect cone and with whiskers that bend away from the pole.
+    /// No corner exists: every push that begins ends at the fold, as with most perfect cones and with whiskers that bend away from the pole.
     AlwaysSlipsOff,
     /// No corner exists: every push that begins ends at the tip.
     AlwaysPullsOff,
@@ -65,19 +65,16 @@ fn corner_distance(
     ends: &impl Fn(&[f64]) -> Vec<Detachment>,
 ) -> Result<f64, NoCorner> {
     let rod = whisker.rod(pole, side);
-    if rod.taper >= 1.0 {
-        return Err(NoCorner::AlwaysSlipsOff);
+    let (rest, length) = (Rest::new(&rod), whisker.length_mm);
+    if let Some(fold) = Sheet::fold_at_tip(Method::fine(), &rod, side) {
+        let at_tip = rest.distance_of_pole(fold.variation.map.pole.length()) * length;
+        let beside = [-1.0, 1.0].map(|sign| at_tip + sign * CORNER_TOLERANCE * length);
+        let kinds: Vec<DetachmentKind> = ends(&beside).iter().map(|end| end.kind).collect();
+        if kinds == [DetachmentKind::SlipOff, DetachmentKind::PullOff] {
+            return Ok(at_tip);
+        }
     }
-    let length = whisker.length_mm;
-    let fold = Sheet::fold_at_tip(Method::fine(), &rod, side);
-    let pole = fold.ok_or(NoCorner::NotFound)?.variation.map.pole.length();
-    let at_tip = Rest::new(&rod).distance_of_pole(pole) * length;
-    let beside = [-1.0, 1.0].map(|sign| at_tip + sign * CORNER_TOLERANCE * length);
-    let kinds: Vec<DetachmentKind> = ends(&beside).iter().map(|end| end.kind).collect();
-    if kinds == [DetachmentKind::SlipOff, DetachmentKind::PullOff] {
-        return Ok(at_tip);
-    }
-    switch(ends, length, rod.pole.abs())
+    switch(ends, length, [rod.pole.abs(), rest.reach()])
 }
 
 /// Half the width of the interval of distances in which slip-off must turn into pull-off, in whisker lengths.
@@ -87,19 +84,22 @@ const CORNER_TOLERANCE: f64 = 1e-10;
 const CORNER_SAMPLES: u32 = 128;
 
 /// Distance at which slip-off turns into pull-off, in the unit of `length`, by multisection. With friction two branches can exchange their
-/// ends there. The search begins at `nearest`, in whisker lengths.
+/// ends there. The search is between the `nearest` distance and the `farthest`, in whisker lengths.
 fn switch(
     ends: &impl Fn(&[f64]) -> Vec<Detachment>,
     length: f64,
-    nearest: f64,
+    [nearest, farthest]: [f64; 2],
 ) -> Result<f64, NoCorner> {
     let samples: Vec<f64> = (1..=CORNER_SAMPLES)
-        .map(|i| nearest + (1.0 - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
+        .map(|i| nearest + (farthest - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
         .map(|distance| distance * length)
         .collect();
     let is_pulled = |end: &Detachment| end.kind == DetachmentKind::PullOff;
-    let pulled = ends(&samples).iter().position(is_pulled);
-    let pulled = pulled.ok_or(NoCorner::AlwaysSlipsOff)?;
+    let sampled = ends(&samples);
+    let pulled = sampled.iter().position(is_pulled).ok_or_else(|| {
+        let is_unknown = |end: &Detachment| end.kind == DetachmentKind::Unresolved;
+        if sampled.iter().any(is_unknown) { NoCorner::NotFound } else { NoCorner::AlwaysSlipsOff }
+    })?;
     let before = pulled.checked_sub(1).ok_or(NoCorner::AlwaysPullsOff)?;
     let mut bracket = Bracket { below: samples[before], above: samples[pulled] };
     bracket.multisect(CORNER_TOLERANCE * length, WIDTH, |distances| {

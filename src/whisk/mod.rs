@@ -149,7 +149,7 @@ pub enum WhiskError {
     #[error(transparent)]
     CurvatureAt(#[from] CurvatureAtError),
     /// The end of the push, or with friction a limit of sliding up to it, was not found on this side.
-    #[error("the states up to the detachment on {0:?} were not found")]
+    #[error("the states up to the detachment on {0} were not found")]
     Unresolved(Side),
     /// The course was cancelled by [`WhiskOptions::cancel`].
     #[error("cancelled")]

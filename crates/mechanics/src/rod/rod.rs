@@ -4,6 +4,7 @@ use crate::numerics::{Dual, Real};
 use crate::rod::{CurvaturePolynomial, RadiusProfile, radius_and_arclength};
 use glam::DVec2;
 use serde_core::{Serialize, Serializer};
+use std::fmt;
 use std::sync::Arc;
 
 /// The side of the whisker that the pole is on. The default is the side of the push angle 0.
@@ -33,6 +34,16 @@ impl Side {
             Self::Cb => 1.0,
             Self::Cf => -1.0,
         }
+    }
+}
+
+/// `CB` or `CF`.
+impl fmt::Display for Side {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.pad(match self {
+            Self::Cb => "CB",
+            Self::Cf => "CF",
+        })
     }
 }
 
