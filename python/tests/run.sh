@@ -4,6 +4,8 @@ set -euo pipefail
 cd "$(dirname "$0")"
 environment="$(../install.sh)"
 target="$(dirname "$environment")"
-export MYPY_CACHE_DIR="$target/mypy" PYTHONDONTWRITEBYTECODE=1 WHISKMAP_WHEEL="$(echo "$target"/wheels/*.whl)"
+# Compiled modules are written to the target folder.
+unset PYTHONDONTWRITEBYTECODE
+export MYPY_CACHE_DIR="$target/mypy" PYTHONPYCACHEPREFIX="$target/pycache" WHISKMAP_WHEEL="$(echo "$target"/wheels/*.whl)"
 "$environment/bin/pytest" -q -p no:cacheprovider -n auto --dist worksteal .
-../examples/run.sh
+../examples/run.sh "$environment"

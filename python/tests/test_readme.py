@@ -31,7 +31,7 @@ def test_the_block_of_the_readme_runs_after_its_installation(tmp_path):
     assert extras, command
     venv.create(tmp_path / "fresh", with_pip=True)
     python = tmp_path / "fresh" / ("Scripts" if os.name == "nt" else "bin") / "python"
-    install = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check", wheel + (extras[1] or "")]
+    install = [python, "-m", "pip", "install", "-q", "--disable-pip-version-check", "--no-compile", wheel + (extras[1] or "")]
     subprocess.run(install, check=True)
     code = block("python", "import whiskmap as wm")
     environment = os.environ | {"MPLBACKEND": "Agg"}
