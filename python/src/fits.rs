@@ -205,7 +205,7 @@ pub fn design(
     let target = target((goal, value), distance_mm, side)?;
     let push = (target.side, distance_mm);
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
+        let found = design_until(&scene.0, varied.clone(), &target, &|_| {}, cancel)?;
         let solutions: Vec<Vec<f64>> = found.values.iter().map(|value| vec![*value]).collect();
         let mut warnings = solution_warnings(&scene.0, &varied, push, &solutions);
         warnings.extend(found.spans.iter().map(|span| {
@@ -248,7 +248,7 @@ pub fn designs(
     let targets = targets.iter().map(|(goal, value)| target((goal, *value), distance_mm, side));
     let targets: Vec<DesignTarget> = targets.collect::<PyResult<_>>()?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = designs_until(&scene.0, &varied, &targets, cancel)?;
+        let found = designs_until(&scene.0, &varied, &targets, &|_| {}, cancel)?;
         let push = (targets[0].side, distance_mm);
         let warnings = solution_warnings(&scene.0, &varied, push, &found.solutions);
         Ok((found, warnings))
