@@ -12,8 +12,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
 use whiskmap::design::{
-    DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design_until,
-    designs_until,
+    DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, MOST_PUSH_DEG,
+    design_until, designs_until,
 };
 use whiskmap::fit::{FitError, FitLoss, fit_until};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle, MeasuredPoints};
@@ -283,8 +283,8 @@ fn target(
     let side = side.map(arguments::side).transpose()?;
     let is_angle = goal.kind().is_some();
     let must = match (is_angle, side) {
-        (true, _) if !(value.abs() <= 360.0 && value != 0.0) => {
-            "must be between -360 and 360 degrees, and not 0"
+        (true, _) if !(value.abs() <= MOST_PUSH_DEG && value != 0.0) => {
+            "must be between -3240 and 3240 degrees, nine turns of the base, and not 0"
         }
         (true, Some(side)) if side != Side::of_push(value) => {
             "must be positive with side='cb', and negative with side='cf'"

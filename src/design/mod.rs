@@ -13,7 +13,7 @@ mod turn;
 mod varied;
 
 pub use samples::is_wide;
-pub use target::{DesignGoal, DesignTarget};
+pub use target::{DesignGoal, DesignTarget, MOST_PUSH_DEG};
 pub use together::{DesignNearest, Designs, designs, designs_until};
 pub use varied::{DesignVariable, DesignVaried};
 

@@ -168,8 +168,9 @@ fn what_cannot_be_designed_is_refused() {
         &["--slip-off", "nine"],
         &["'nine'", "must be an angle, such as 30, 30deg, 30° or 0.5rad"],
     );
-    for angle in ["0", "361", "7rad"] {
-        refused(&["--slip-off", angle], &["must be between -360deg and 360deg, and not 0"]);
+    for angle in ["0", "3241", "57rad"] {
+        let said = "must be between -3240deg and 3240deg, nine turns of the base, and not 0";
+        refused(&["--slip-off", angle], &[said]);
     }
     refused(
         &["--slip-off", "-9", "--side", "cb"],
