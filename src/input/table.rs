@@ -17,17 +17,29 @@ pub(crate) const STDIN: &str = "<stdin>";
 pub struct CsvError {
     place: String,
     what: String,
+    lacks_columns: bool,
 }
 
 impl CsvError {
     /// Creates an error about the whole CSV file `origin`.
     pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
-        Self { place: escaped(origin), what: what.into() }
+        Self { place: escaped(origin), what: what.into(), lacks_columns: false }
     }
 
     /// Creates an error about a line of the CSV file `origin`.
     pub(crate) fn at(origin: &str, line: usize, what: impl Into<String>) -> Self {
         Self::whole(&format!("{origin}:{line}"), what)
+    }
+
+    /// Returns the error of a CSV file that lacks columns.
+    pub(crate) fn of_columns(self) -> Self {
+        Self { lacks_columns: true, ..self }
+    }
+
+    /// Returns true if the CSV file lacks a column that it must have, or has it under another name ([`CsvTable::renamed`]).
+    #[must_use]
+    pub const fn lacks_columns(&self) -> bool {
+        self.lacks_columns
     }
 }
 
@@ -138,7 +150,7 @@ impl CsvTable {
                 shortened(&found.join(", ")),
                 groups.join(", ")
             );
-            return Err(CsvError::at(&self.origin, line, what));
+            return Err(CsvError::at(&self.origin, line, what).of_columns());
         }
         let lacking = optional.iter().copied().filter(is_absent);
         if let Some(what) = misnamed(unused.iter().copied().take(MOST_HINTS), lacking) {
