@@ -114,6 +114,7 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
         taper,
         follicle_px,
         points,
+        likelihood,
         pole,
         ..
     } = options;
@@ -127,6 +128,7 @@ fn refuse_points(options: &TrackingOptions) -> Result<(), TrackingError> {
         ("taper", taper.map(digits), without_points),
         ("follicle_px", follicle, "they name the follicle"),
         ("points", points.first().cloned(), "they have no body parts"),
+        ("likelihood", likelihood.map(digits), "they have no likelihoods"),
     ];
     for (option, value, why) in given {
         if let Some(value) = value {

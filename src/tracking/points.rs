@@ -26,6 +26,10 @@ pub(super) fn read(
         let must = "must be left out with points x,y: they have no names".to_owned();
         Err(refused(option, value, must))
     };
+    if let Some(likelihood) = options.likelihood {
+        let must = "must be left out with points x,y: they have no likelihoods".to_owned();
+        return Err(refused("likelihood", &digits(likelihood), must));
+    }
     if let Some(whisker) = options.whisker {
         return nameless("whisker", &whisker.to_string());
     }
