@@ -90,31 +90,30 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
     let unused = SolverArgs::default();
     Ok(match [first, second].map(|path| is_scene(path)) {
         [false, false] => [stored(files, first, solver)?, stored(files, second, solver)?],
-        [false, true] => {
-            let stored_map = stored(files, first, &unused)?;
-            let scene = files.scene(second)?;
-            if let Ok(stored_scene) = stored_map.scene()? {
-                check_same([&stored_scene, &scene]).map_err(CompareError::from)?;
-            }
-            let scene_map = of_scene(scene, Some(&stored_map))?;
-            [stored_map, scene_map]
-        }
-        [true, false] => {
-            let stored_map = stored(files, second, &unused)?;
-            let scene = files.scene(first)?;
-            if let Ok(stored_scene) = stored_map.scene()? {
-                check_same([&scene, &stored_scene]).map_err(CompareError::from)?;
-            }
-            let scene_map = of_scene(scene, Some(&stored_map))?;
-            [scene_map, stored_map]
-        }
         [true, true] => {
             let scenes = [files.scene(first)?, files.scene(second)?];
             check_same(scenes.each_ref()).map_err(CompareError::from)?;
             let [first_map, second_map] = scenes.map(|scene| of_scene(scene, None));
             [first_map?, second_map?]
         }
+        [is_first, _] => {
+            let (stored_path, scene_path) =
+                if is_first { (second, first) } else { (first, second) };
+            let stored_map = stored(files, stored_path, &unused)?;
+            let scene = files.scene(scene_path)?;
+            if let Ok(stored_scene) = stored_map.scene()? {
+                let scenes = [&stored_scene, &scene];
+                check_same(in_order(scenes, is_first)).map_err(CompareError::from)?;
+            }
+            let scene_map = of_scene(scene, Some(&stored_map))?;
+            in_order([stored_map, scene_map], is_first)
+        }
     })
+}
+
+/// Returns a pair in reverse order if `is_reversed` is true.
+fn in_order<T>([one, other]: [T; 2], is_reversed: bool) -> [T; 2] {
+    if is_reversed { [other, one] } else { [one, other] }
 }
 
 /// Returns an error if a map lacks a channel that --within names.
