@@ -21,11 +21,13 @@ use whiskmap::terminal::StandardOutput;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  whiskmap compare cpu/cone.exr gpu/cone.exr
-  whiskmap compare cpu/cone.exr gpu/cone.exr --within 1e-5 --json difference.json
-  whiskmap compare exact.zarr rounded.zarr --within force_un=0.1,regime=0
-  whiskmap compare outputs/cone.exr outputs/cone.zarr --within 0
-  whiskmap compare outputs/cone.exr scenes/cone.toml --engine spectral
+  whiskmap map scenes/cone.toml --engine cpu -o cpu
+  whiskmap map scenes/cone.toml --engine spectral -o spectral
+  whiskmap compare cpu/cone.exr spectral/cone.exr
+  whiskmap compare cpu/cone.exr spectral/cone.exr --within 1e-5 --json difference.json
+  whiskmap compare cpu/cone.exr scenes/cone.toml --engine spectral
+  whiskmap map scenes/cone.toml --engine cpu --format zarr --digits 4 -o rounded
+  whiskmap compare cpu/cone.exr rounded/cone.zarr --within force_un=0.1,regime=0
 
 Both maps need the same scene and grid; engines, tolerances, channels, digits and formats may differ. Channels that only one \
 map has are named. The map of a scene is computed, with the channels of the other map.

@@ -19,8 +19,8 @@ use whiskmap::tracking::{
 
 const EXAMPLES: &str = "\
 Examples:
-  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500 --pole pole --contact-within 0.3mm -o frames.csv
-  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --pole pole --contact-within 0.3mm --shape 0 -o traced.csv
+  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500 --pole pole --contact-within 0.35mm -o frames.csv
+  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --pole pole --contact-within 0.35mm --shape 0 -o traced.csv
   whiskmap import scenes/measurements.csv --mm-per-pixel 0.05 --fps 500 -o frames.csv
 
 FILE is a CSV file of DeepLabCut, measurements of whisk as CSV, or points along the whisker: x,y in a file for each frame, or \
