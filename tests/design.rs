@@ -1,9 +1,11 @@
 //! The values that make a whisker detach where it should: known ones come back, none is missed, none is made up.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use whiskmap::Side;
 use whiskmap::design::{
-    Design, DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design, designs,
+    Design, DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design,
+    design_until, designs, designs_until, ends_between,
 };
 use whiskmap::scene::{Parameter, Scene};
 use whiskmap::sensitivity::Variable;
@@ -499,4 +501,27 @@ fn designs_with_other_counts_and_numbers_are_refused() {
         design(&scene, limited, &slip_off).unwrap_err().to_string(),
         "taper: must lie between 0 and 1, which the scene accepts; the limits are 2 to 3"
     );
+}
+
+/// The search of one number begins with 128 pushes; that of two with about 600.
+#[test]
+fn progress_counts_pushes() {
+    let scene = robot();
+    let of = |goal| DesignTarget {
+        distance_mm: 60.0,
+        side: Side::Cb,
+        goal,
+        value: reached(&scene, 60.0, Side::Cb, goal),
+    };
+    let targets = [DesignGoal::SlipOff, DesignGoal::MaxMoment].map(of);
+    let (pushes, never) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let on_progress = |more| {
+        pushes.fetch_add(more, Ordering::Relaxed);
+    };
+    design_until(&scene, TAPER, &targets[0], &on_progress, &never).unwrap();
+    assert!(pushes.swap(0, Ordering::Relaxed) >= 128);
+    ends_between(&scene, TAPER, &targets[0], [0.8, 0.9], &on_progress).unwrap();
+    assert!(pushes.swap(0, Ordering::Relaxed) >= 128);
+    designs_until(&scene, &varied(&[BASE, TAPER]), &targets, &on_progress, &never).unwrap();
+    assert!(pushes.into_inner() >= 500);
 }

@@ -12,8 +12,8 @@ use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
 use whiskmap::design::{
-    DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, design_until,
-    designs_until,
+    DesignError, DesignGoal, DesignTarget, DesignVariable, DesignVaried, MOST_PUSH_DEG,
+    design_until, designs_until,
 };
 use whiskmap::fit::{FitError, FitLoss, fit_until};
 use whiskmap::measured::{ComparedPoint, MeasuredAngle, MeasuredPoints};
@@ -205,7 +205,7 @@ pub fn design(
     let target = target((goal, value), distance_mm, side)?;
     let push = (target.side, distance_mm);
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = design_until(&scene.0, varied.clone(), &target, cancel)?;
+        let found = design_until(&scene.0, varied.clone(), &target, &|_| {}, cancel)?;
         let solutions: Vec<Vec<f64>> = found.values.iter().map(|value| vec![*value]).collect();
         let mut warnings = solution_warnings(&scene.0, &varied, push, &solutions);
         warnings.extend(found.spans.iter().map(|span| {
@@ -248,7 +248,7 @@ pub fn designs(
     let targets = targets.iter().map(|(goal, value)| target((goal, *value), distance_mm, side));
     let targets: Vec<DesignTarget> = targets.collect::<PyResult<_>>()?;
     let job = |cancel: &Arc<AtomicBool>| {
-        let found = designs_until(&scene.0, &varied, &targets, cancel)?;
+        let found = designs_until(&scene.0, &varied, &targets, &|_| {}, cancel)?;
         let push = (targets[0].side, distance_mm);
         let warnings = solution_warnings(&scene.0, &varied, push, &found.solutions);
         Ok((found, warnings))
@@ -283,8 +283,8 @@ fn target(
     let side = side.map(arguments::side).transpose()?;
     let is_angle = goal.kind().is_some();
     let must = match (is_angle, side) {
-        (true, _) if !(value.abs() <= 360.0 && value != 0.0) => {
-            "must be between -360 and 360 degrees, and not 0"
+        (true, _) if !(value.abs() <= MOST_PUSH_DEG && value != 0.0) => {
+            "must be between -3240 and 3240 degrees, nine turns of the base, and not 0"
         }
         (true, Some(side)) if side != Side::of_push(value) => {
             "must be positive with side='cb', and negative with side='cf'"

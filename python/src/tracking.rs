@@ -22,7 +22,7 @@ pub struct Options {
     fps: f64,
     whisker: Option<i64>,
     points: Vec<String>,
-    likelihood: f64,
+    likelihood: Option<f64>,
     follicle_px: Option<[f64; 2]>,
     curvature_at_mm: Option<f64>,
     fit_to_mm: Option<f64>,

@@ -94,7 +94,7 @@ def read_tracking(
     format: Literal["deeplabcut", "whisk", "xy"] | None = None,
     whisker: int | None = None,
     points: Sequence[str] = (),
-    likelihood: float = 0.9,
+    likelihood: float | None = None,
     follicle_px: Sequence[float] | None = None,
     curvature_at_mm: float | None = None,
     fit_to_mm: float | None = None,
@@ -124,8 +124,8 @@ def read_tracking(
         Identity of the whisker in measurements of `whisk`; needed if there are several.
     points : sequence of str
         Body parts of DeepLabCut along the whisker, from base to tip. If left out, they are all but the pole, and their order is found.
-    likelihood : float
-        Least likelihood of a point of DeepLabCut; points below it are lost.
+    likelihood : float, optional
+        Least likelihood of a point of DeepLabCut; points below it are lost. 0.9 if left out. Other formats have no likelihoods.
     follicle_px : (x, y), optional
         Position of the follicle: the end that is nearer to it is the base. If left out, the base is the end that moves less.
     curvature_at_mm : float, optional
@@ -176,7 +176,7 @@ def read_tracking(
         "fps": number("fps", fps),
         "whisker": None if whisker is None else whole("whisker", whisker),
         "points": list(points),
-        "likelihood": number("likelihood", likelihood),
+        "likelihood": None if likelihood is None else number("likelihood", likelihood),
         "follicle_px": None if follicle_px is None else _pair("follicle_px", follicle_px),
         "curvature_at_mm": None if curvature_at_mm is None else number("curvature_at_mm", curvature_at_mm),
         "fit_to_mm": None if fit_to_mm is None else number("fit_to_mm", fit_to_mm),

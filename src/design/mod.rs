@@ -13,7 +13,7 @@ mod turn;
 mod varied;
 
 pub use samples::is_wide;
-pub use target::{DesignGoal, DesignTarget};
+pub use target::{DesignGoal, DesignTarget, MOST_PUSH_DEG};
 pub use together::{DesignNearest, Designs, designs, designs_until};
 pub use varied::{DesignVariable, DesignVaried};
 
@@ -177,10 +177,11 @@ pub fn design(
     varied: impl Into<DesignVaried>,
     target: &DesignTarget,
 ) -> Result<Design, DesignError> {
-    design_until(scene, varied, target, &AtomicBool::new(false))
+    design_until(scene, varied, target, &|_| {}, &AtomicBool::new(false))
 }
 
-/// Finds every value of the one `varied` number as [`design`] does. If `cancel` is true, the function soon returns an error.
+/// Finds every value of the one `varied` number as [`design`] does. `on_progress(n)` is called after `n` more pushes are computed, from several
+/// threads. If `cancel` is true, the function soon returns an error.
 ///
 /// # Errors
 /// Fails as [`design`] does, and if it is cancelled.
@@ -188,6 +189,7 @@ pub fn design_until(
     scene: &Scene,
     varied: impl Into<DesignVaried>,
     target: &DesignTarget,
+    on_progress: &(dyn Fn(usize) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Design, DesignError> {
     let varied = &varied.into();
@@ -195,6 +197,7 @@ pub fn design_until(
     let search = DesignSearch {
         scene: &DesignScene { scene, varied, distance_mm: target.distance_mm },
         target,
+        on_progress,
         cancel,
     };
     let range = ranges[0];
@@ -223,6 +226,7 @@ pub fn design_until(
 }
 
 /// Computes the ends of pushes at values of the one `varied` number over a part of its range, in its unit, `[value]`, as [`Design::ends`] are.
+/// `on_progress(n)` is called after `n` more pushes are computed, from several threads.
 ///
 /// # Errors
 /// Fails as [`design`] does.
@@ -231,12 +235,14 @@ pub fn ends_between(
     varied: impl Into<DesignVaried>,
     target: &DesignTarget,
     range: [f64; 2],
+    on_progress: &(dyn Fn(usize) + Sync),
 ) -> Result<Vec<DesignEnd>, DesignError> {
     let varied = &varied.into();
     let (scene, ..) = &checked(scene, varied, &[*target])?;
     let search = DesignSearch {
         scene: &DesignScene { scene, varied, distance_mm: target.distance_mm },
         target,
+        on_progress,
         cancel: &AtomicBool::new(false),
     };
     Ok(search.scan(range))

@@ -24,6 +24,8 @@ const LEAST_SPAN: f64 = 1e-3;
 pub struct DesignSearch<'a> {
     pub scene: &'a DesignScene<'a>,
     pub target: &'a DesignTarget,
+    /// Function that is called after some more pushes are computed, with their number.
+    pub on_progress: &'a (dyn Fn(usize) + Sync),
     pub cancel: &'a AtomicBool,
 }
 
@@ -35,6 +37,7 @@ impl DesignSearch<'_> {
         let scenes: Vec<Option<Scene>> = values.iter().map(moved).collect();
         let accepted: Vec<&Scene> = scenes.iter().flatten().collect();
         let mut reached = self.target.reached(&accepted).into_iter();
+        (self.on_progress)(accepted.len());
         let end = |(value, scene): (&f64, &Option<Scene>)| {
             let found = scene.as_ref().and_then(|_| reached.next());
             let (kind, reached) = found.unwrap_or((DetachmentKind::Unresolved, None));

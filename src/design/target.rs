@@ -19,6 +19,9 @@ const TOLERANCE_DEG: f64 = 1e-9;
 /// the root of the rounding error, as only the push angle is stationary there.
 const TOLERANCE: f64 = 1e-6;
 
+/// Largest size of the push angle of a target, in degrees: nine turns of the base, up to which pushes are followed.
+pub const MOST_PUSH_DEG: f64 = 9.0 * 360.0;
+
 /// Target of a design: where the pole is, and the value that a push must reach.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DesignTarget {

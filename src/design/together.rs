@@ -84,10 +84,11 @@ pub fn designs(
     varied: &DesignVaried,
     targets: &[DesignTarget],
 ) -> Result<Designs, DesignError> {
-    designs_until(scene, varied, targets, &AtomicBool::new(false))
+    designs_until(scene, varied, targets, &|_| {}, &AtomicBool::new(false))
 }
 
-/// Finds the values of several numbers as [`designs`] does. If `cancel` is true, the function soon returns an error.
+/// Finds the values of several numbers as [`designs`] does. `on_progress(n)` is called after `n` more pushes are computed, from several threads. If
+/// `cancel` is true, the function soon returns an error.
 ///
 /// # Errors
 /// Fails as [`designs`] does, and if it is cancelled.
@@ -95,6 +96,7 @@ pub fn designs_until(
     scene: &Scene,
     varied: &DesignVaried,
     targets: &[DesignTarget],
+    on_progress: &(dyn Fn(usize) + Sync),
     cancel: &AtomicBool,
 ) -> Result<Designs, DesignError> {
     let (scene, scene_values, ranges) = &checked(scene, varied, targets)?;
@@ -102,6 +104,7 @@ pub fn designs_until(
         scene: DesignScene { scene, varied, distance_mm: targets[0].distance_mm },
         sizes: sizes(scene, varied, scene_values),
         targets,
+        on_progress,
         cancel,
     };
     let grid = Places::new(&search, ranges);
@@ -159,6 +162,8 @@ struct TogetherSearch<'a> {
     /// Natural size of each varied number, in its unit: `[variable]`.
     sizes: Vec<f64>,
     targets: &'a [DesignTarget],
+    /// Function that is called after some more pushes are computed, with their number.
+    on_progress: &'a (dyn Fn(usize) + Sync),
     cancel: &'a AtomicBool,
 }
 
@@ -181,7 +186,9 @@ impl TogetherSearch<'_> {
             let (kind, value) = push.reached(target.goal, largest);
             value.filter(|value| target.accepts(kind) && !value.is_nan())
         });
-        values.collect()
+        let values = values.collect();
+        (self.on_progress)(1);
+        values
     }
 
     /// Returns the misses of the targets, each relative to its value.

@@ -5,15 +5,34 @@ use crate::terminal::escaped;
 /// Least similarity of a suggested name, as in clap.
 const SIMILAR: f64 = 0.7;
 
-/// Returns the name among `known` that resembles `name` most, by Jaro's similarity of lower-case names; `None` if none is similar.
+/// Letters of the longer one of two names for each edit between them. With more edits, one of them must contain the other.
+const LETTERS_PER_EDIT: usize = 3;
+
+/// Returns the name among `known` that resembles `name` most, by Jaro's similarity of lower-case names; `None` if none is near in spelling.
 pub(crate) fn similar<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let name = name.to_lowercase();
     let known = known.into_iter();
     let scored = known
-        .map(|other| (strsim::jaro(&name, &other.to_lowercase()), other))
+        .map(|other| (other.to_lowercase(), other))
+        .filter(|(lower, _)| are_near(&name, lower))
+        .map(|(lower, other)| (strsim::jaro(&name, &lower), other))
         .filter(|(score, _)| *score > SIMILAR);
     let best = scored.max_by(|(one, _), (other, _)| one.total_cmp(other));
     best.map(|(_, other)| other)
+}
+
+/// Returns true if few edits lead from one name to the other, with or without their units, or if one contains the other.
+fn are_near(name: &str, known: &str) -> bool {
+    let few_edits = |name: &str, known: &str| {
+        let longest = name.chars().count().max(known.chars().count());
+        LETTERS_PER_EDIT * strsim::osa_distance(name, known) <= longest
+    };
+    let is_part = |part: &str, whole: &str| part.len() >= SHORTEST && whole.contains(part);
+    let stem = |name: &str| UnitName::of(name).stem.join("_");
+    few_edits(name, known)
+        || few_edits(&stem(name), &stem(known))
+        || is_part(name, known)
+        || is_part(known, name)
 }
 
 /// Returns the end of a message about an unknown `name`: a suggestion among the `known` names, or nothing.
@@ -250,6 +269,21 @@ mod tests {
             ("distnce_cm", "distance_mm"),
         ] {
             let hint = did_you_mean(name, ["side", known]);
+            assert_eq!(hint, format!("; did you mean `{known}`?"), "{name}");
+        }
+    }
+
+    /// Jaro's similarity of each pair is above 0.7.
+    #[test]
+    fn names_with_many_differences_are_not_suggested() {
+        for (name, known) in [("nosuch", "bench"), ("gravity", "grid")] {
+            assert!(strsim::jaro(name, known) > super::SIMILAR, "{name}");
+            assert_eq!(did_you_mean(name, [known]), "", "{name}");
+        }
+        for (name, known) in
+            [("bnech", "bench"), ("distanze", "distance_mm"), ("radius", "tip_radius_um")]
+        {
+            let hint = did_you_mean(name, [known]);
             assert_eq!(hint, format!("; did you mean `{known}`?"), "{name}");
         }
     }

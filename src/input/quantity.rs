@@ -148,7 +148,12 @@ impl Quantity {
         let parsed: Option<f64> = number.trim_start().parse().ok();
         let finite = parsed.filter(|number| number.is_finite());
         let [_, kind, examples] = self.about();
-        let refused = || format!("must be {kind}, such as {examples}");
+        let refused = || {
+            let point = with_decimal_point(number).map_or_else(String::new, |number| {
+                format!("; write a decimal point, not a comma: {number}{unit}")
+            });
+            format!("must be {kind}, such as {examples}{point}")
+        };
         let number = finite.ok_or_else(refused)?;
         let unit = unit.trim();
         if unit.is_empty() {
@@ -190,6 +195,13 @@ impl Quantity {
             _ => "must be left out".to_owned(),
         }
     }
+}
+
+/// Returns the number in a text with a decimal comma, with a decimal point; `None` for other texts.
+fn with_decimal_point(text: &str) -> Option<String> {
+    let number = text.trim().replacen(',', ".", 1);
+    let is_number = text.contains(',') && number.parse::<f64>().is_ok();
+    is_number.then_some(number)
 }
 
 /// Converts a number between units of these sizes.
@@ -245,7 +257,16 @@ mod tests {
             (TimeS, "20min", "unit min: must be s (the default), ms or us"),
             (Number, "0.9mm", "unit mm: must be left out"),
             (LengthMm, "far", "must be a length"),
-            (LengthMm, "1,5", "must be a length"),
+            (
+                LengthMm,
+                "1,5",
+                "must be a length, such as 15.66, 15.66mm or 1.5cm; write a decimal point, not a comma: 1.5",
+            ),
+            (
+                AngleDeg,
+                "-1,5 deg",
+                "must be an angle, such as 30, 30deg, 30\u{b0} or 0.5rad; write a decimal point, not a comma: -1.5 deg",
+            ),
             (AngleDeg, "nan", "must be an angle"),
             (AngleDeg, "1e999", "must be an angle"),
             (LengthMm, "1e308m", "must be a length"),

@@ -7,6 +7,7 @@ use crate::terminal::escaped;
 use std::fs::File;
 use std::io;
 use std::path::Path;
+use std::sync::atomic::AtomicBool;
 
 /// Name of standard input in messages.
 pub(crate) const STDIN: &str = "<stdin>";
@@ -17,17 +18,29 @@ pub(crate) const STDIN: &str = "<stdin>";
 pub struct CsvError {
     place: String,
     what: String,
+    lacks_columns: bool,
 }
 
 impl CsvError {
     /// Creates an error about the whole CSV file `origin`.
     pub(crate) fn whole(origin: &str, what: impl Into<String>) -> Self {
-        Self { place: escaped(origin), what: what.into() }
+        Self { place: escaped(origin), what: what.into(), lacks_columns: false }
     }
 
     /// Creates an error about a line of the CSV file `origin`.
     pub(crate) fn at(origin: &str, line: usize, what: impl Into<String>) -> Self {
         Self::whole(&format!("{origin}:{line}"), what)
+    }
+
+    /// Returns the error of a CSV file that lacks columns.
+    pub(crate) fn of_columns(self) -> Self {
+        Self { lacks_columns: true, ..self }
+    }
+
+    /// Returns true if the CSV file lacks a column that it must have, or has it under another name ([`CsvTable::renamed`]).
+    #[must_use]
+    pub const fn lacks_columns(&self) -> bool {
+        self.lacks_columns
     }
 }
 
@@ -92,7 +105,17 @@ impl CsvTable {
     /// # Errors
     /// If there is no row, a quote is not closed, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        let mut split = CsvLines::split(text, origin)?;
+        Self::parse_until(text, origin, &AtomicBool::new(false))
+    }
+
+    /// Splits the text of a CSV file as [`CsvTable::parse`] does. If `cancel` becomes true, the table soon has only the lines so far, or is refused for
+    /// the lack of lines.
+    pub(crate) fn parse_until(
+        text: &str,
+        origin: &str,
+        cancel: &AtomicBool,
+    ) -> Result<Self, CsvError> {
+        let mut split = CsvLines::split_until(text, origin, cancel)?;
         if split.lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));
@@ -138,7 +161,7 @@ impl CsvTable {
                 shortened(&found.join(", ")),
                 groups.join(", ")
             );
-            return Err(CsvError::at(&self.origin, line, what));
+            return Err(CsvError::at(&self.origin, line, what).of_columns());
         }
         let lacking = optional.iter().copied().filter(is_absent);
         if let Some(what) = misnamed(unused.iter().copied().take(MOST_HINTS), lacking) {
@@ -302,15 +325,16 @@ pub(crate) struct CsvLines {
 }
 
 impl CsvLines {
-    /// Splits the text of a CSV file into the lines of its cells. Messages call the file `origin`.
+    /// Splits the text of a CSV file into the lines of its cells. Messages call the file `origin`. If `cancel` becomes true, only the lines so far are
+    /// returned.
     ///
     /// # Errors
     /// If a quote is not closed.
-    pub fn split(text: &str, origin: &str) -> Result<Self, CsvError> {
+    pub fn split_until(text: &str, origin: &str, cancel: &AtomicBool) -> Result<Self, CsvError> {
         let text = normalised(text);
         let separator = separator(&text);
-        let lines =
-            lines(&text, separator).map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        let lines = lines(&text, separator, cancel)
+            .map_err(|(line, what)| CsvError::at(origin, line, what))?;
         Ok(Self { separator, lines })
     }
 

@@ -37,7 +37,7 @@ impl BaseReadings {
             let others = note.map_or(String::new(), |note| format!("; {note}"));
             let what =
                 format!("must have at least two of the columns {moment}, {x} and {y}{others}");
-            return Err(CsvError::whole(&table.origin, what));
+            return Err(CsvError::whole(&table.origin, what).of_columns());
         }
         let numbers = |name: &str, most: f64| {
             let end = digits(most);

@@ -47,9 +47,8 @@ pub fn rows_of_band([rows, push_angles]: [usize; 2]) -> usize {
 /// Maximum number of panels computed together: each has two sheets of about 100 KiB.
 const MOST_PANELS: usize = 64;
 
-/// Maximum number of push angles, and of distances, of a sample that estimates the time of a scene: 16,384 cells per whisker. Twelve
-/// estimates of shipped scenes were 0.9 to 1.9 times their runs, on two cores busy with other work. Repeated estimates of the cone
-/// differed by a factor of 1.25; with 32 lines by 2.6.
+/// Maximum number of push angles, and of distances, of a sample that estimates the time of a scene: 16,384 cells per whisker. A
+/// cell of a sparser sample costs more than one of the map.
 pub const SAMPLE_LINES: usize = 128;
 
 /// Number of values of each sweep axis in a sample that estimates the time of a scene.

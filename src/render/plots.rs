@@ -35,8 +35,8 @@ pub type BranchAxis = PlotAxis<BranchPoint, f64>;
 pub struct DrawnCurve<'a> {
     /// Detachments of the curve, one whisker and side after the other, each in order of increasing distance.
     pub rows: &'a [Detachment],
-    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a line between them
-    /// closes the region of stable states: grey, or in the colour of the whisker.
+    /// Distance in mm at which the tip of the resting whisker touches the pole. If both sides have a detachment there, a grey line between
+    /// them closes the region of stable states.
     pub reach_mm: f64,
     /// Dash pattern of the curve: solid or dashed.
     pub stroke: Stroke,
@@ -76,10 +76,7 @@ pub fn curves(title: &str, all: &[DrawnCurve], [x, y]: [CurveAxis; 2]) -> Plot {
         let at_reach = rows.iter().filter(|row| row.distance_mm == *reach_mm);
         let tip: Vec<_> = at_reach.filter_map(place).collect();
         if tip.len() > 1 {
-            plot.lines.push(match of_whisker {
-                Some(ink) => Line::new(tip, *ink, *stroke),
-                None => Line::new(tip, Ink::Grey, *stroke).named("first touch at the tip"),
-            });
+            plot.lines.push(Line::new(tip, Ink::Grey, *stroke).named("first touch at the tip"));
         }
     }
     if has_dashes {

@@ -5,6 +5,7 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use thiserror::Error;
 
+use super::toml::places_of;
 use crate::input::{did_you_mean, shortened};
 use crate::terminal::{escaped, escaped_but};
 
@@ -134,12 +135,20 @@ impl SceneError {
     }
 }
 
-/// The end of a message about an unknown field: the key among those expected that resembles it, if one does.
+/// The end of a message about an unknown field: the places of a scene that have its name, or else the key among those expected that resembles it, if
+/// one does.
 fn suggestion(found: &str, expected: &str) -> String {
     // TOML quotes every key in backticks.
     let keys = |text: &'_ str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect();
     let (found, expected): (Vec<String>, Vec<String>) = (keys(found), keys(expected));
     let found = found.first().map_or("", String::as_str);
+    let places: Vec<String> =
+        places_of(found).into_iter().map(|place| format!("`{place}`")).collect();
+    if let Some((last, others)) = places.split_last() {
+        let others = others.join(", ");
+        let or = if others.is_empty() { "" } else { " or " };
+        return format!("; did you mean {others}{or}{last}?");
+    }
     did_you_mean(found, expected.iter().map(String::as_str))
 }
 

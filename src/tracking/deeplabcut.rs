@@ -4,10 +4,14 @@ use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused, unknown};
 use super::{FRAME_NUMBERS, ImageFrame, ImageFrames, PointOrder, Remarks, frame_number};
 use crate::input::{CsvError, CsvLine, CsvLines, CsvTable, each_once, shortened};
+use crate::scene::digits;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Names of the rows of the header.
 const HEADER: [&str; 3] = ["scorer", "bodyparts", "coords"];
+
+/// Least likelihood of a point where the options give none.
+const LIKELIHOOD: f64 = 0.9;
 
 /// Reads the frames of a file, until `cancel` becomes true. Points below the likelihood are lost.
 pub(super) fn read(
@@ -23,6 +27,13 @@ pub(super) fn read(
         return Err(refused("whisker", &whisker.to_string(), must));
     }
     check_header(&lines, origin)?;
+    if let Some(likelihood) = options.likelihood
+        && lines.lines[2].cells.iter().all(|coord| coord != "likelihood")
+    {
+        let must = "must be left out: the file has no column likelihood".to_owned();
+        return Err(refused("likelihood", &digits(likelihood), must));
+    }
+    let least_likelihood = options.likelihood.unwrap_or(LIKELIHOOD);
     let header: Vec<CsvLine> = lines.lines.drain(..HEADER.len()).collect();
     // Newer versions name an image in three columns: two folders, and the file.
     let folders = header[1].cells.iter().skip(1).take_while(|part| part.is_empty()).count();
@@ -59,7 +70,7 @@ pub(super) fn read(
     }
     let positions = |part: &str| match cancel.load(Ordering::Relaxed) {
         true => Err(TrackingError::Cancelled),
-        false => Ok(positions(&table, part, header[2].number, options.likelihood)?),
+        false => Ok(positions(&table, part, header[2].number, least_likelihood)?),
     };
     let along = along.into_iter().map(|part| Ok((part, positions(part)?)));
     let along = along.collect::<Result<Vec<PartPositions>, TrackingError>>()?;
@@ -71,7 +82,7 @@ pub(super) fn read(
     };
     Ok(ImageFrames {
         frames: frames(&table, &along, pole.as_ref(), fixed)?,
-        remarks: remarks(origin, &parts, &along, pole.as_ref(), options.likelihood),
+        remarks: remarks(origin, &parts, &along, pole.as_ref(), least_likelihood),
         order: match options.points.is_empty() {
             true => PointOrder::Named(along.iter().map(|(part, _)| (*part).to_owned()).collect()),
             false => PointOrder::FromBase,

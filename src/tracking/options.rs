@@ -76,8 +76,8 @@ pub struct TrackingOptions {
     pub whisker: Option<i64>,
     /// Names of the body parts of DeepLabCut along the whisker, from base to tip. If empty, they are all but the pole, and their order is found.
     pub points: Vec<String>,
-    /// Least likelihood of a point of DeepLabCut; points below it are lost.
-    pub likelihood: f64,
+    /// Least likelihood of a point of DeepLabCut; points below it are lost. `None` for 0.9.
+    pub likelihood: Option<f64>,
     /// Position of the follicle, `[x, y]` in pixels: the end that is nearer to it is the base. `None` to find the end that moves less.
     pub follicle_px: Option<[f64; 2]>,
     /// Arclength from the base at which the curvature is given, in mm; `None` for a quarter of the median length.
@@ -131,7 +131,7 @@ impl TrackingOptions {
             fps,
             whisker: None,
             points: Vec::new(),
-            likelihood: 0.9,
+            likelihood: None,
             follicle_px: None,
             curvature_at_mm: None,
             fit_to_mm: None,
@@ -160,9 +160,9 @@ impl TrackingOptions {
                 return Err(refused(option, &digits(number), must));
             }
         }
-        if !(0.0..=1.0).contains(&self.likelihood) {
+        if let Some(likelihood) = self.likelihood.filter(|least| !(0.0..=1.0).contains(least)) {
             let must = "must be a number between 0 and 1".to_owned();
-            return Err(refused("likelihood", &digits(self.likelihood), must));
+            return Err(refused("likelihood", &digits(likelihood), must));
         }
         if let Some(degree) = self.degree.filter(|degree| *degree > MOST_DEGREE) {
             let must = format!("must be between 0 and {MOST_DEGREE}");

@@ -4,11 +4,14 @@ use super::names::numbers_in;
 use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvLine, CsvLines, shortened};
+use crate::scene::digits;
+use std::sync::atomic::AtomicBool;
 
-/// Reads the frames of files. An empty file among several is a lost frame, and a point without numbers is a lost point.
+/// Reads the frames of files, until `cancel` becomes true. An empty file among several is a lost frame, and a point without numbers is a lost point.
 pub(super) fn read(
     texts: &[(String, String)],
     options: &TrackingOptions,
+    cancel: &AtomicBool,
 ) -> Result<ImageFrames, TrackingError> {
     let empty = |origin: &str| {
         Err(CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into())
@@ -16,13 +19,17 @@ pub(super) fn read(
     let nameless = |option, value: &str| {
         // A file without lines may be of any tracker.
         if let [(text, origin)] = texts
-            && CsvLines::split(text, origin)?.lines.is_empty()
+            && CsvLines::split_until(text, origin, cancel)?.lines.is_empty()
         {
             return empty(origin);
         }
         let must = "must be left out with points x,y: they have no names".to_owned();
         Err(refused(option, value, must))
     };
+    if let Some(likelihood) = options.likelihood {
+        let must = "must be left out with points x,y: they have no likelihoods".to_owned();
+        return Err(refused("likelihood", &digits(likelihood), must));
+    }
     if let Some(whisker) = options.whisker {
         return nameless("whisker", &whisker.to_string());
     }
@@ -37,7 +44,7 @@ pub(super) fn read(
     let mut frames: Vec<ImageFrame> = Vec::new();
     let (files, note) = in_order(texts)?;
     for (file, (text, origin)) in files {
-        let mut lines = CsvLines::split(text, origin)?;
+        let mut lines = CsvLines::split_until(text, origin, cancel)?;
         let names = [&["x", "y"][..], &["frame", "x", "y"]];
         let is_header = |line: &CsvLine| names.iter().any(|names| line.cells == **names);
         if lines.lines.first().is_some_and(is_header) {

@@ -1,6 +1,6 @@
 //! `--columns`: own names of columns, in all commands that read tables.
 
-use super::{Place, SCENE};
+use super::{Place, SCENE, words};
 
 /// Every command with a table: the option of the table, its header and a row, and the own names with a header to match.
 const TABLES: [(&[&str], &str, &str, &str, &str); 5] = [
@@ -90,6 +90,19 @@ fn names_of_columns_that_do_not_fit_are_refused() {
     ] {
         place.run(&[&curve[..], &[names]].concat()).assert_refused(&[said]);
     }
+}
+
+#[test]
+fn a_table_that_lacks_columns_names_the_option() {
+    let place = Place::with(SCENE);
+    for (command, _, row, _, renamed) in TABLES {
+        place.write("table.csv", &format!("{renamed}\n{row}\n"));
+        let run = place.run(&[command, &["table.csv"]].concat());
+        run.assert_refused(&["error: table.csv:", "; --columns NAME=COLUMN takes own names"]);
+    }
+    place.write("table.csv", "side,distance_mm,push_angle_deg\nup,15.66,15.6\n");
+    let run = place.run(&words("fit scene.toml --data table.csv --free taper"));
+    assert!(run.code == Some(2) && !run.err.contains("--columns"), "{run:?}");
 }
 
 /// A column that is most likely meant as one of the table is not left out.

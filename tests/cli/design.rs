@@ -168,8 +168,9 @@ fn what_cannot_be_designed_is_refused() {
         &["--slip-off", "nine"],
         &["'nine'", "must be an angle, such as 30, 30deg, 30° or 0.5rad"],
     );
-    for angle in ["0", "361", "7rad"] {
-        refused(&["--slip-off", angle], &["must be between -360deg and 360deg, and not 0"]);
+    for angle in ["0", "3241", "57rad"] {
+        let said = "must be between -3240deg and 3240deg, nine turns of the base, and not 0";
+        refused(&["--slip-off", angle], &[said]);
     }
     refused(
         &["--slip-off", "-9", "--side", "cb"],
@@ -246,8 +247,21 @@ fn a_distance_and_a_kept_taper_are_designed() {
         let text = kept.out.split(&format!("{name} = ")).nth(1).unwrap();
         text.split_whitespace().next().unwrap().parse().unwrap()
     };
+    // The tip has 15 digits.
     let tip_to_base = radius("tip_radius_um") / radius("base_radius_um");
-    assert!((tip_to_base - 0.05).abs() < 1e-6, "{}", kept.out);
+    assert!((tip_to_base - 0.05).abs() < 1e-15, "{}", kept.out);
+    place.write("scene.toml", &SCENE.replace("tip_radius_um = 1.5", "taper = 0.940"));
+    let kept = place.good(&words(
+        "design scene.toml --distance 12 --side cb --max-moment 100 --for base_radius_um --keep taper -o -",
+    ));
+    assert!(kept.out.contains("\ntaper = 0.940\n"), "{}", kept.out);
+    assert!(!kept.out.contains("base_radius_um = 30"), "{}", kept.out);
+    let varied = words("design scene.toml --distance 12 --side cb --max-moment 100 --for taper");
+    let printed = place.good(&varied).out;
+    let written = place.good(&[&varied[..], &["-o", "-"]].concat()).out;
+    let mut values = printed.lines();
+    let is_written = values.any(|taper| written.contains(&format!("\ntaper = {taper}\n")));
+    assert!(is_written, "{printed}{written}");
 }
 
 #[test]

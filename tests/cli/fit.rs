@@ -292,4 +292,9 @@ fn points_of_whiskers_share_the_fitted_values() {
     place
         .run(&["reproduce", "figures", "--fig4d", "points.csv"])
         .assert_refused(&["--fig4d points.csv: has a column whisker"]);
+    place.write("nameless.csv", "side,distance_mm,push_angle_deg\ncb,9,20\n");
+    let nameless = words("fit scene.toml --data nameless.csv --free tip_radius_um");
+    place.run(&nameless).assert_refused(&[
+        "fit needs one; select it by --at whisker=VALUE, or name the whisker of each point in a column whisker of --data",
+    ]);
 }

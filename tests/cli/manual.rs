@@ -86,3 +86,11 @@ fn every_command_has_its_description() {
     described.dedup();
     assert!(count > 20 && described.len() == count, "{described:?}");
 }
+
+#[test]
+fn an_unknown_command_has_no_page_and_names_one_that_is_near() {
+    let far = place().run(&["man", "nosuch"]);
+    far.assert_refused(&["nosuch: must be one of map, "]);
+    assert!(!far.err.contains("did you mean"), "{far:?}");
+    place().run(&["man", "bnech"]).assert_refused(&["; did you mean `bench`?"]);
+}

@@ -44,6 +44,15 @@ fn a_curve_has_the_push_angle_to_the_right_and_is_closed_at_the_tip() {
     assert!(ends.iter().all(|[_, y]| *y >= top[0][1]), "nothing is above the tip");
 }
 
+/// In the colours of two whiskers, the lines would look like slip-offs.
+#[test]
+fn curves_of_several_whiskers_are_closed_in_grey() {
+    let sweep = SCENE.replace("tip_radius_um = 1.5\n", "") + "taper = [0.9, 0.95]\n";
+    let svg = drawn(&Place::with(&sweep), &["curve", "scene.toml"]);
+    assert_eq!(lines(&svg, "#9aa1a8").iter().filter(|line| line[0][1] == line[1][1]).count(), 2);
+    assert_eq!(svg.matches(">first touch at the tip<").count(), 1);
+}
+
 #[test]
 fn the_regions_of_a_straight_whisker_are_minus_and_plus() {
     let straight = SCENE.replace("parabola_per_mm = 0.02", "parabola_per_mm = 0");

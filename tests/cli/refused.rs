@@ -174,6 +174,7 @@ fn arguments_out_of_range() {
     for (at, word, option, must) in [
         (3, "far", "--distance", "must be a length, such as"),
         (3, "30deg", "--distance", "unit deg: must be mm (the default), cm, m or um"),
+        (3, "15,66mm", "--distance", "; write a decimal point, not a comma: 15.66mm"),
         (5, "far", "--push-angle", "must be an angle, such as"),
         (5, "1mm", "--push-angle", "unit mm: must be deg (the default), ° or rad"),
     ] {
@@ -182,6 +183,10 @@ fn arguments_out_of_range() {
         let quoted = format!("'{word}'");
         place.run(&words).assert_refused(&[&quoted, option, must]);
     }
+    place.run(&words("curve scene.toml --distance 15,660")).assert_refused(&[
+        "--distance 660 mm: must be between",
+        "; a comma separates distances, and numbers have decimal points",
+    ]);
     for command in [&shape[..], &["branch", "scene.toml", "--distance=9"]] {
         let run = place.run(&[command, &["--points", "2.5"]].concat());
         run.assert_refused(&["'2.5'", "must be a whole number between", "and 1000000"]);

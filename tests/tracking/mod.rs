@@ -157,7 +157,7 @@ fn lost_points_are_left_out_and_a_lost_base_is_a_gap() {
     assert_eq!(why, "shape = 1: must be a frame with a whisker: this one is a gap");
     assert!(found.shape(6).unwrap_err().to_string().contains("must be between 0 and 5"));
     // A lower limit keeps the point.
-    let low = with(&|options| options.likelihood = 0.85);
+    let low = with(&|options| options.likelihood = Some(0.85));
     assert_eq!(parse(&text, &low).unwrap().frames[1].reason, None);
     // Frames that the file leaves out are gaps, too.
     let lines: Vec<String> = deeplabcut(exact).lines().map(str::to_owned).collect();

@@ -104,6 +104,7 @@ fn a_degree_that_needs_more_points_is_named() {
 #[test]
 fn options_that_do_not_fit_are_refused() {
     let (film, rows, points) = (deeplabcut(exact), measurements(FaceAxis::X), points(0));
+    let unlikely = film.replacen(&",x,y,likelihood".repeat(9), &",x,y,other".repeat(9), 1);
     let at = ImagePole::At([0.0, 0.0]);
     let part = |name: &str| ImagePole::Part(name.to_owned());
     for (text, options, why) in [
@@ -115,7 +116,7 @@ fn options_that_do_not_fit_are_refused() {
         (&film, with(&|options| options.fps = f64::NAN), "fps = NaN: must be a number between"),
         (
             &film,
-            with(&|options| options.likelihood = 1.5),
+            with(&|options| options.likelihood = Some(1.5)),
             "likelihood = 1.5: must be a number between 0 and 1",
         ),
         (&film, with(&|options| options.degree = Some(7)), "degree = 7: must be between 0 and 6"),
@@ -214,6 +215,21 @@ fn options_that_do_not_fit_are_refused() {
                 (options.pole, options.contact_within_mm) = (Some(part("pole")), Some(1.0))
             }),
             "pole = pole: must be X,Y in pixels",
+        ),
+        (
+            &rows,
+            with(&|options| options.likelihood = Some(0.9)),
+            "likelihood = 0.9: must be left out with measurements of whisk: they have no likelihoods",
+        ),
+        (
+            &points,
+            with(&|options| options.likelihood = Some(0.5)),
+            "likelihood = 0.5: must be left out with points x,y: they have no likelihoods",
+        ),
+        (
+            &unlikely,
+            with(&|options| options.likelihood = Some(0.5)),
+            "likelihood = 0.5: must be left out: the file has no column likelihood",
         ),
         (
             &points,

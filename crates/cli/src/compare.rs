@@ -21,11 +21,13 @@ use whiskmap::terminal::StandardOutput;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  whiskmap compare cpu/cone.exr gpu/cone.exr
-  whiskmap compare cpu/cone.exr gpu/cone.exr --within 1e-5 --json difference.json
-  whiskmap compare exact.zarr rounded.zarr --within force_un=0.1,regime=0
-  whiskmap compare outputs/cone.exr outputs/cone.zarr --within 0
-  whiskmap compare outputs/cone.exr scenes/cone.toml --engine spectral
+  whiskmap map scenes/cone.toml --engine cpu -o cpu
+  whiskmap map scenes/cone.toml --engine spectral -o spectral
+  whiskmap compare cpu/cone.exr spectral/cone.exr
+  whiskmap compare cpu/cone.exr spectral/cone.exr --within 1e-5 --json difference.json
+  whiskmap compare cpu/cone.exr scenes/cone.toml --engine spectral
+  whiskmap map scenes/cone.toml --engine cpu --format zarr --digits 4 -o rounded
+  whiskmap compare cpu/cone.exr rounded/cone.zarr --within force_un=0.1,regime=0
 
 Both maps need the same scene and grid; engines, tolerances, channels, digits and formats may differ. Channels that only one \
 map has are named. The map of a scene is computed, with the channels of the other map.
@@ -90,31 +92,30 @@ fn open(args: &CompareArgs, files: &mut Files) -> Result<[MapSource; 2], Failure
     let unused = SolverArgs::default();
     Ok(match [first, second].map(|path| is_scene(path)) {
         [false, false] => [stored(files, first, solver)?, stored(files, second, solver)?],
-        [false, true] => {
-            let stored_map = stored(files, first, &unused)?;
-            let scene = files.scene(second)?;
-            if let Ok(stored_scene) = stored_map.scene()? {
-                check_same([&stored_scene, &scene]).map_err(CompareError::from)?;
-            }
-            let scene_map = of_scene(scene, Some(&stored_map))?;
-            [stored_map, scene_map]
-        }
-        [true, false] => {
-            let stored_map = stored(files, second, &unused)?;
-            let scene = files.scene(first)?;
-            if let Ok(stored_scene) = stored_map.scene()? {
-                check_same([&scene, &stored_scene]).map_err(CompareError::from)?;
-            }
-            let scene_map = of_scene(scene, Some(&stored_map))?;
-            [scene_map, stored_map]
-        }
         [true, true] => {
             let scenes = [files.scene(first)?, files.scene(second)?];
             check_same(scenes.each_ref()).map_err(CompareError::from)?;
             let [first_map, second_map] = scenes.map(|scene| of_scene(scene, None));
             [first_map?, second_map?]
         }
+        [is_first, _] => {
+            let (stored_path, scene_path) =
+                if is_first { (second, first) } else { (first, second) };
+            let stored_map = stored(files, stored_path, &unused)?;
+            let scene = files.scene(scene_path)?;
+            if let Ok(stored_scene) = stored_map.scene()? {
+                let scenes = [&stored_scene, &scene];
+                check_same(in_order(scenes, is_first)).map_err(CompareError::from)?;
+            }
+            let scene_map = of_scene(scene, Some(&stored_map))?;
+            in_order([stored_map, scene_map], is_first)
+        }
     })
+}
+
+/// Returns a pair in reverse order if `is_reversed` is true.
+fn in_order<T>([one, other]: [T; 2], is_reversed: bool) -> [T; 2] {
+    if is_reversed { [other, one] } else { [one, other] }
 }
 
 /// Returns an error if a map lacks a channel that --within names.

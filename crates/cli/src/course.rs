@@ -67,8 +67,7 @@ impl CourseArgs {
             return sine.map_err(|why| Failure::Input(format!("{}: {why}", self.source())));
         }
         let path = self.angles.as_deref().unwrap_or(Path::new(STDOUT));
-        let table = self.columns.table(path, &AngleCourse::COLUMNS)?;
-        let course = AngleCourse::of(&table)?;
+        let course = self.columns.read(path, &AngleCourse::COLUMNS, AngleCourse::of)?;
         notes(&course.note);
         Ok(course)
     }

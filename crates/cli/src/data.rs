@@ -3,7 +3,7 @@
 use super::failure::{Failure, notes, warnings};
 use clap::Args;
 use std::path::Path;
-use whiskmap::input::{ColumnName, CsvTable};
+use whiskmap::input::{ColumnName, CsvError, CsvTable};
 use whiskmap::measured::{Comparison, MeasuredPoints};
 use whiskmap::scene::{Scene, digits, rounded};
 
@@ -16,17 +16,26 @@ pub struct ColumnArgs {
 }
 
 impl ColumnArgs {
-    /// Reads the table in the input `path`, with the `expected` names of columns in place of the names in the file.
-    pub fn table(&self, path: &Path, expected: &[&str]) -> Result<CsvTable, Failure> {
-        Ok(CsvTable::input(path)?.renamed(&self.columns, expected)?)
+    /// Reads the table in the input `path`, with the `expected` names of columns in place of the names in the file, and returns what `read` makes of
+    /// it. The error of a table that lacks columns names --columns.
+    pub fn read<T>(
+        &self,
+        path: &Path,
+        expected: &[&str],
+        read: impl FnOnce(&CsvTable) -> Result<T, CsvError>,
+    ) -> Result<T, Failure> {
+        let table = CsvTable::input(path)?.renamed(&self.columns, expected)?;
+        read(&table).map_err(|why| match why.lacks_columns() {
+            true => Failure::Input(format!("{why}; --columns NAME=COLUMN takes own names")),
+            false => why.into(),
+        })
     }
 }
 
 /// Reads measured points from the input `path`, whose `columns` may have other names. Prints unused columns, the number of points with a
 /// missing value, and the number of points whose angle has the sign of the other side.
 pub fn read(path: &Path, columns: &ColumnArgs) -> Result<MeasuredPoints, Failure> {
-    let table = columns.table(path, &MeasuredPoints::COLUMNS)?;
-    let points = MeasuredPoints::of(&table)?;
+    let points = columns.read(path, &MeasuredPoints::COLUMNS, MeasuredPoints::of)?;
     notes(&points.note);
     warnings([points.missing(), points.crossed()].into_iter().flatten());
     Ok(points)

@@ -26,7 +26,9 @@ const START: [&str; 2] = [r#"<script type="application/json" id="start">"#, "</s
 Examples:
   whiskmap explore scenes/cone.toml
   whiskmap explore scenes/cone.toml --data scenes/cone_points.csv -o page.html
+  whiskmap map scenes/cone.toml
   whiskmap explore outputs/cone.exr --no-open
+  whiskmap map scenes/morphology.toml --format zarr
   whiskmap explore outputs/morphology.zarr
 
 The page is one file that computes in the browser: it needs no installation and no network, and sends nothing. Of a sweep, it \

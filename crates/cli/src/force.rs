@@ -70,8 +70,9 @@ pub fn run(args: &ForceArgs, files: &mut Files) -> Result<(), Failure> {
         true => ForceMethod::Model,
         false => ForceMethod::Lever,
     };
-    let table = args.columns.table(&args.frames, &CurvatureFrames::COLUMNS)?;
-    let read = CurvatureFrames::of(&table, whisker.length_mm, method)?;
+    let read = args.columns.read(&args.frames, &CurvatureFrames::COLUMNS, |table| {
+        CurvatureFrames::of(table, whisker.length_mm, method)
+    })?;
     notes(&read.note);
     let baseline = read.baseline(&whisker, args.baseline)?;
     match &baseline {

@@ -19,8 +19,8 @@ use whiskmap::tracking::{
 
 const EXAMPLES: &str = "\
 Examples:
-  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500 --pole pole --contact-within 0.3mm -o frames.csv
-  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --pole pole --contact-within 0.3mm --shape 0 -o traced.csv
+  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --fps 500 --pole pole --contact-within 0.35mm -o frames.csv
+  whiskmap import scenes/deeplabcut.csv --mm-per-pixel 0.05 --pole pole --contact-within 0.35mm --shape 0 -o traced.csv
   whiskmap import scenes/measurements.csv --mm-per-pixel 0.05 --fps 500 -o frames.csv
 
 FILE is a CSV file of DeepLabCut, measurements of whisk as CSV, or points along the whisker: x,y in a file for each frame, or \
@@ -77,9 +77,9 @@ pub struct ImportArgs {
     /// Body parts along the whisker, from base to tip, separated by commas [default: all but the pole, whose order is found]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     points: Vec<String>,
-    /// Least likelihood of a point of DeepLabCut, from 0 to 1; points below it are lost
-    #[arg(long, value_name = "P", default_value = "0.9", value_parser = number)]
-    likelihood: f64,
+    /// Least likelihood of a point of DeepLabCut, from 0 to 1; points below it are lost [default: 0.9]
+    #[arg(long, value_name = "P", value_parser = number)]
+    likelihood: Option<f64>,
     /// Position of the follicle in pixels; the nearer end of the whisker is the base [default: the end that moves less]
     #[arg(long, value_name = "X,Y", allow_hyphen_values = true, value_parser = pixels)]
     follicle: Option<[f64; 2]>,

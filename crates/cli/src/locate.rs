@@ -127,8 +127,7 @@ impl LocateArgs {
             };
             return Ok(vec![reading]);
         };
-        let table = self.columns.table(path, &BaseReadings::COLUMNS)?;
-        let read = BaseReadings::of(&table)?;
+        let read = self.columns.read(path, &BaseReadings::COLUMNS, BaseReadings::of)?;
         notes(&read.note);
         Ok(read.readings)
     }

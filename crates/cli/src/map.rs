@@ -34,7 +34,7 @@ Examples:
   whiskmap map scenes/morphology.toml --format zarr --digits 5,force_un=3
   whiskmap map scenes/morphology.toml --format zarr --resume
   whiskmap map scenes/morphology.toml --format zarr --shard 3/8 --resume
-  whiskmap map - < my_whisker.toml
+  whiskmap map - < scenes/cone.toml
 
 A sweep over more than two axes needs a Zarr store, the folder NAME.zarr. Any number of runs may fill it, each with blocks of \
 whiskers; finished blocks are kept.")]

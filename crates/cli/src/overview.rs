@@ -75,6 +75,40 @@ mod tests {
         assert_eq!(listed, defined);
     }
 
+    /// Returns the word after an option, as of `-o FILE`.
+    fn after<'a>(words: &[&'a str], option: &str) -> Option<&'a str> {
+        let place = words.iter().position(|word| *word == option)?;
+        words.get(place + 1).copied()
+    }
+
+    #[test]
+    fn examples_read_maps_of_earlier_examples() {
+        let mut commands = commands();
+        commands.build();
+        let mut count = 0;
+        for command in commands.get_subcommands() {
+            let help = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+            let mut made: Vec<String> = Vec::new();
+            for example in help.lines().filter_map(|line| line.strip_prefix("  whiskmap ")) {
+                let words: Vec<&str> = example.split_whitespace().collect();
+                let output = after(&words, "-o");
+                let is_map = |word: &&str| word.ends_with(".exr") || word.ends_with(".zarr");
+                for read in words.iter().copied().filter(is_map) {
+                    let is_made = made.iter().any(|map| map == read);
+                    assert!(is_made || output == Some(read), "{}: {read}", command.get_name());
+                    count += 1;
+                }
+                made.extend(output.map(str::to_owned));
+                if let ["map", scene, ..] = words[..] {
+                    let name = scene.trim_start_matches("scenes/").trim_end_matches(".toml");
+                    let ending = after(&words, "--format").unwrap_or("exr");
+                    made.push(format!("{}/{name}.{ending}", output.unwrap_or("outputs")));
+                }
+            }
+        }
+        assert!(count > 10, "{count}");
+    }
+
     /// The lines of a template are not wrapped.
     #[test]
     fn the_list_of_commands_fits_a_terminal() {

@@ -111,9 +111,13 @@ pub fn check_distances(scene: &Scene, distances: &[f64]) -> Result<(), Failure> 
         if !(nearest <= distance && distance <= farthest && distance > radius) {
             let [distance, nearest, farthest, radius] =
                 [distance, nearest, farthest, radius].map(digits);
+            let commas = match distances.len() {
+                1 => "",
+                _ => "; a comma separates distances, and numbers have decimal points",
+            };
             return Err(Failure::Input(format!(
                 "--distance {distance} mm: must be between {nearest} mm (length_mm / 1000) and {farthest} mm (10 * length_mm), \
-                 and more than {radius} mm (pole.radius_mm)"
+                 and more than {radius} mm (pole.radius_mm){commas}"
             )));
         }
     }

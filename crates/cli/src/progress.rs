@@ -14,10 +14,20 @@ pub struct Progress {
 }
 
 impl Progress {
+    /// Creates the progress of `count` things.
     pub fn over(count: usize, things: &'static str) -> Self {
+        Self::new(Some(count as u64), things)
+    }
+
+    /// Creates the progress of a number of things that is not known before the end.
+    pub fn counting(things: &'static str) -> Self {
+        Self::new(None, things)
+    }
+
+    fn new(count: Option<u64>, things: &'static str) -> Self {
         Self {
             bar: bar(count, things),
-            lines: Mutex::new(ProgressLines::over(count as u64, things)),
+            lines: Mutex::new(ProgressLines::new(count, things)),
             start: Instant::now(),
         }
     }
@@ -36,14 +46,19 @@ impl Progress {
     }
 }
 
-/// Creates a bar with rate and time left; it is hidden if standard error is not a terminal.
-fn bar(count: usize, things: &str) -> ProgressBar {
+/// Creates a bar with rate and time left, or without a `count` a line with number and rate; it is hidden if standard error is not a terminal.
+fn bar(count: Option<u64>, things: &str) -> ProgressBar {
     let rate = |state: &ProgressState, out: &mut dyn Write| {
         let _ = write!(out, "{:.0}", state.per_sec());
     };
-    let template = format!("{{wide_bar}} {{percent:>3}} %, {{rate}} {things}/s, {{eta}} left");
+    let (bar, template) = match count {
+        Some(count) => (
+            ProgressBar::new(count),
+            format!("{{wide_bar}} {{percent:>3}} %, {{rate}} {things}/s, {{eta}} left"),
+        ),
+        None => (ProgressBar::no_length(), format!("{{pos}} {things}, {{rate}} {things}/s")),
+    };
     let style = ProgressStyle::with_template(&template);
-    let bar = ProgressBar::new(count as u64);
     let bar = match style {
         Ok(style) => bar.with_style(style.with_key("rate", rate)),
         Err(_) => bar,
@@ -57,14 +72,15 @@ const INTERVAL: Duration = Duration::from_secs(30);
 
 /// Progress lines for a standard error that is not a terminal.
 struct ProgressLines {
-    count: u64,
+    /// Number of all things; `None` if it is not known.
+    count: Option<u64>,
     things: &'static str,
     /// Time of the next line, since the start.
     next: Duration,
 }
 
 impl ProgressLines {
-    const fn over(count: u64, things: &'static str) -> Self {
+    const fn new(count: Option<u64>, things: &'static str) -> Self {
         Self { count, things, next: INTERVAL }
     }
 
@@ -75,13 +91,15 @@ impl ProgressLines {
         }
         self.next = time + INTERVAL;
         let rate = done as f64 / time.as_secs_f64();
-        let left = Duration::try_from_secs_f64((self.count - done) as f64 / rate);
+        let things = self.things;
+        let Some(count) = self.count else {
+            return Some(format!("{done} {things}, {rate:.0} {things}/s"));
+        };
+        let left = Duration::try_from_secs_f64((count - done) as f64 / rate);
         Some(format!(
-            "{:.0} % of {} {things}, {rate:.0} {things}/s, {} left",
-            100.0 * done as f64 / self.count as f64,
-            self.count,
+            "{:.0} % of {count} {things}, {rate:.0} {things}/s, {} left",
+            100.0 * done as f64 / count as f64,
             HumanDuration(left.unwrap_or(Duration::MAX)),
-            things = self.things,
         ))
     }
 }
@@ -92,7 +110,7 @@ mod tests {
 
     #[test]
     fn a_line_appears_every_half_minute() {
-        let mut lines = ProgressLines::over(1000, "cells");
+        let mut lines = ProgressLines::new(Some(1000), "cells");
         let mut due = |done, seconds| lines.due(done, Duration::from_secs(seconds));
         assert_eq!(due(10, 29), None);
         assert_eq!(due(0, 30), None);
@@ -101,5 +119,12 @@ mod tests {
         assert_eq!(due(200, 74), None);
         let line = "75 % of 1000 cells, 10 cells/s, 25 seconds left";
         assert_eq!(due(750, 75).as_deref(), Some(line));
+    }
+
+    #[test]
+    fn a_count_without_an_end_has_number_and_rate() {
+        let mut lines = ProgressLines::new(None, "pushes");
+        let line = lines.due(240, Duration::from_secs(30));
+        assert_eq!(line.as_deref(), Some("240 pushes, 8 pushes/s"));
     }
 }

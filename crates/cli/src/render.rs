@@ -21,15 +21,17 @@ use whiskmap::terminal::StandardOutput;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
+  whiskmap map scenes/cone.toml
   whiskmap render outputs/cone.exr
   whiskmap render outputs/cone.exr -o cone.svg
   whiskmap render outputs/cone.exr -o cone.pdf --size 85mm
   whiskmap render outputs/cone.exr --channel force_un -o force.png --width 3000
   whiskmap render outputs/cone.exr --channel force_un --log --range 1,1000
   whiskmap render outputs/cone.exr -o - | display
-  whiskmap render outputs/sweep.zarr --at pole_radius_mm=0.25 --at friction=0.2
+  whiskmap map scenes/morphology.toml --format zarr
+  whiskmap render outputs/morphology.zarr --at taper=0.95 --at curvature_per_mm=0.02
   whiskmap render scenes/morphology.toml --at taper=0.95 --channel force_un
-  whiskmap render - -o map.png --engine cpu < my_whisker.toml
+  whiskmap render - -o map.png --engine cpu < scenes/cone.toml
 
 A picture has at most two sweep axes; give a value of each other axis with --at. A slice of one distance, or of one push angle, is \
 drawn as a line chart of the channel. Of a scene, only the whiskers of the picture are computed. An SVG or PDF contains the cells as pixels, and text and lines as vectors.

@@ -14,9 +14,10 @@ use whiskmap::terminal::StandardOutput;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  whiskmap status outputs/sweep.zarr
-  whiskmap status outputs/sweep.zarr --verify
-  whiskmap status outputs/sweep.zarr --repair
+  whiskmap map scenes/morphology.toml --format zarr
+  whiskmap status outputs/morphology.zarr
+  whiskmap status outputs/morphology.zarr --verify
+  whiskmap status outputs/morphology.zarr --repair
 
 The exit code is 0 only if every block is finished and no file is damaged. Without --verify, only identity, length and index \
 of each file are checked. After --repair, `whiskmap map --resume` recomputes the removed blocks.")]

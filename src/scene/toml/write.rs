@@ -73,6 +73,20 @@ impl Scene {
         self.text.to_string()
     }
 
+    /// Returns true if the text of the scene has the key `whisker.taper` in place of the radius at the tip.
+    ///
+    /// ```
+    /// use whiskmap::scene::Scene;
+    ///
+    /// let cone = include_str!("../../../scenes/cone.toml");
+    /// assert!(!Scene::parse(cone, "cone.toml")?.has_taper_key());
+    /// # Ok::<(), whiskmap::scene::SceneError>(())
+    /// ```
+    #[must_use]
+    pub fn has_taper_key(&self) -> bool {
+        place_in(&self.to_toml(), TAPER_KEY).is_some()
+    }
+
     /// Returns the TOML text of this scene with other values of some parameters, in their units. Comments and layout stay. A taper becomes the
     /// radius at the tip, with 15 digits, unless the text has the key `whisker.taper`, which then has the taper.
     ///
@@ -84,7 +98,7 @@ impl Scene {
             .to_toml()
             .parse()
             .map_err(|why: TomlError| SceneError::whole(&self.name, why.message()))?;
-        let is_tapered = place_in(&self.to_toml(), TAPER_KEY).is_some();
+        let is_tapered = self.has_taper_key();
         for (parameter, _) in values {
             let (parameter, digits) = match parameter {
                 Parameter::Taper | Parameter::TipRadiusUm if is_tapered => continue,
@@ -98,9 +112,10 @@ impl Scene {
         }
         // It changes with either radius.
         if is_tapered {
-            let taper = changed.whisker.taper();
-            if taper != self.whisker.taper() {
-                put(document.as_table_mut(), TAPER_KEY, rounded(taper, DERIVED_DIGITS));
+            let [taper, before] =
+                [&changed, self].map(|scene| rounded(scene.whisker.taper(), DERIVED_DIGITS));
+            if taper != before {
+                put(document.as_table_mut(), TAPER_KEY, taper);
             }
         }
         Ok(document.to_string())

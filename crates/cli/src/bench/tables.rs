@@ -181,7 +181,9 @@ fn verdicts(out: &mut impl Write, report: &Report) -> io::Result<()> {
         }
     }
     if report.maps.iter().all(|map| map.adapter.is_none()) {
-        writeln!(out, "verdict: no GPU was measured")?;
+        let is_measured = report.trajectories.iter().any(|row| row.adapter.is_some());
+        let part = if is_measured { " with whole maps" } else { "" };
+        writeln!(out, "verdict: no GPU was measured{part}")?;
     }
     Ok(())
 }
@@ -197,5 +199,35 @@ fn spread(timing: &Timing) -> String {
     match timing.spread {
         part if part < 9.995 => format!("{:4.0}%{mark}", 100.0 * part),
         times => format!("{times:4.0}x{mark}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Report, Timing, verdicts};
+    use whiskmap::bench::Trajectories;
+
+    /// A GPU integrates trajectories of scenes whose maps it does not compute.
+    #[test]
+    fn a_gpu_with_trajectories_alone_is_not_denied() {
+        let said = |adapter: Option<&str>| {
+            let timing =
+                Timing { median: 1.0, fastest: 1.0, slowest: 1.0, spread: 0.0, is_noisy: false };
+            let row = Trajectories {
+                engine: "gpu f32".to_owned(),
+                adapter: adapter.map(str::to_owned),
+                count: 1,
+                seconds: timing,
+                per_s: 1.0,
+                apart: 0.0,
+            };
+            let mut out = Vec::new();
+            let report = Report { trajectories: vec![row], ..Report::default() };
+            let written = verdicts(&mut out, &report);
+            (written.is_ok(), String::from_utf8_lossy(&out).into_owned())
+        };
+        assert_eq!(said(None), (true, "verdict: no GPU was measured\n".to_owned()));
+        let partly = "verdict: no GPU was measured with whole maps\n".to_owned();
+        assert_eq!(said(Some("llvmpipe")), (true, partly));
     }
 }

@@ -45,7 +45,7 @@ Examples:
   whiskmap curve scenes/cone.toml --data scenes/cone_points.csv --plot points.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --csv bands.csv --plot bands.svg
   whiskmap curve scenes/uncertain.toml --samples 500 --x force_un --plot forces.svg
-  whiskmap curve scenes/uncertain.toml --samples 500 --data points.csv --csv beside.csv --plot beside.svg
+  whiskmap curve scenes/uncertain.toml --samples 500 --data scenes/cone_points.csv --csv beside.csv
 
 The table has one line per side and distance of the scene, CF before CB. Angles are positive for CB and negative for CF. \
 Lines without values are out of reach or unresolved; standard error gives the number of unresolved ones. For a scene with \

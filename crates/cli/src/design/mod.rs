@@ -9,14 +9,16 @@ use super::failure::Failure;
 use super::files::Files;
 use super::outputs::{PictureFile, PlotArgs, write};
 use super::pole::{self, WhiskerArgs, title};
+use super::progress::Progress;
 use clap::Args;
 use messages::{print_warnings, refused, undetermined, unreached, unreached_together};
 use options::{Distance, GoalArgs, distance, variable};
 use solutions::{SOLUTION_DIGITS, Solutions};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::AtomicBool;
 use whiskmap::Side;
 use whiskmap::design::{
-    Design, DesignTarget, DesignVariable, DesignVaried, design, designs, ends_between,
+    Design, DesignTarget, DesignVariable, DesignVaried, design_until, designs_until, ends_between,
 };
 use whiskmap::render::{Chart, designs as chart};
 use whiskmap::scene::{Scene, digits, rounded};
@@ -81,8 +83,10 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     let picture = args.picture.open(files)?;
     let solutions = match &asked[..] {
         [one] => {
-            let found =
-                design(&scene, varied.clone(), &one.target).map_err(|why| refused(path, why))?;
+            let found = with_progress(|on_progress, never| {
+                design_until(&scene, varied.clone(), &one.target, on_progress, never)
+            });
+            let found = found.map_err(|why| refused(path, why))?;
             if let Some(picture) = picture {
                 plot(path, &scene, &varied, (&one.target, &found), picture)?;
             }
@@ -100,7 +104,10 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
         }
         several => {
             let targets: Vec<DesignTarget> = several.iter().map(|asked| asked.target).collect();
-            let found = designs(&scene, &varied, &targets).map_err(|why| refused(path, why))?;
+            let found = with_progress(|on_progress, never| {
+                designs_until(&scene, &varied, &targets, on_progress, never)
+            });
+            let found = found.map_err(|why| refused(path, why))?;
             if found.solutions.is_empty() || found.is_undetermined {
                 let why = unreached_together(&varied.variables, several, &found);
                 return Err(Failure::NoValue(why));
@@ -121,6 +128,14 @@ pub fn run(args: &DesignArgs, files: &mut Files) -> Result<(), Failure> {
     Ok(())
 }
 
+/// Runs a search with the function that it calls for its progress, and a flag that never cancels it. The progress is shown meanwhile.
+fn with_progress<T>(search: impl FnOnce(&(dyn Fn(usize) + Sync), &AtomicBool) -> T) -> T {
+    let count = Progress::counting("pushes");
+    let found = search(&|pushes| count.inc(pushes), &AtomicBool::new(false));
+    count.finish();
+    found
+}
+
 /// Draws the ends of pushes around the values `found` for a `target`.
 fn plot(
     path: &Path,
@@ -130,7 +145,9 @@ fn plot(
     picture: PictureFile,
 ) -> Result<(), Failure> {
     let range = found.shown();
-    let ends = ends_between(scene, varied.clone(), target, range);
+    let ends = with_progress(|on_progress, _| {
+        ends_between(scene, varied.clone(), target, range, on_progress)
+    });
     let near = Design { range, ends: ends.map_err(|why| refused(path, why))?, ..found.clone() };
     let chart = chart(varied.variables[0].variable, target, &near);
     let title = heading(scene, varied, target.distance_mm);

@@ -5,7 +5,7 @@ use crate::arguments::length;
 use crate::failure::Failure;
 use clap::Args;
 use whiskmap::Side;
-use whiskmap::design::{DesignGoal, DesignTarget, DesignVariable, DesignVaried};
+use whiskmap::design::{DesignGoal, DesignTarget, DesignVariable, DesignVaried, MOST_PUSH_DEG};
 use whiskmap::input::{Quantity, did_you_mean};
 use whiskmap::scene::{Parameter, Scene, digits, rounded};
 use whiskmap::sensitivity::Variable;
@@ -98,10 +98,11 @@ impl GoalValue {
 
 fn push(text: &str) -> Result<GoalValue, String> {
     let (value, unit) = Quantity::AngleDeg.parse_with_unit(text)?;
-    if value.abs() <= 360.0 && value != 0.0 {
+    if value.abs() <= MOST_PUSH_DEG && value != 0.0 {
         Ok(GoalValue { value, unit })
     } else {
-        Err("must be between -360deg and 360deg, and not 0".to_owned())
+        let most = digits(MOST_PUSH_DEG);
+        Err(format!("must be between -{most}deg and {most}deg, nine turns of the base, and not 0"))
     }
 }
 

@@ -47,9 +47,13 @@ impl<'a> Solutions<'a> {
         Ok(self.scene.to_toml_with(&changes.unwrap_or_default())?)
     }
 
-    /// Returns the numbers of the scene with the values of a solution. Instead of a taper, the scene gives the radius at the tip.
+    /// Returns the numbers of the scene with the values of a solution. Instead of a varied taper, the scene gives the radius at the tip, unless it has the
+    /// key of the taper.
     fn changes(&self, values: &[f64]) -> Vec<(Parameter, f64)> {
         let mut changes = self.varied.changes(self.scene, values);
+        if self.varied.keeps_taper || self.scene.has_taper_key() {
+            return changes;
+        }
         let base = changes.iter().find(|(parameter, _)| *parameter == Parameter::BaseRadiusUm);
         let base_radius_um = base.map_or(self.scene.whisker.base_radius_um, |(_, value)| *value);
         for change in &mut changes {

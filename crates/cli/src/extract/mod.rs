@@ -25,10 +25,12 @@ use whiskmap::terminal::StandardOutput;
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Examples:
-  whiskmap extract outputs/sweep.zarr --at taper=0.9 --at pole_radius_mm=0.25 -o slice.csv
-  whiskmap extract outputs/sweep.zarr --at friction=0.2 --channel force_un -o force.npy
-  whiskmap extract outputs/sweep.zarr --at friction=0.2 -o slice.zarr
-  whiskmap extract outputs/sweep.zarr -o map.exr
+  whiskmap map scenes/morphology.toml --format zarr
+  whiskmap extract outputs/morphology.zarr --at taper=0.95 --at push_angle_deg=10 -o slice.csv
+  whiskmap extract outputs/morphology.zarr --at taper=0.95 --channel force_un -o force.npy
+  whiskmap extract outputs/morphology.zarr --at taper=0.95 -o slice.zarr
+  whiskmap extract outputs/morphology.zarr -o map.exr
+  whiskmap map scenes/cone.toml
   whiskmap extract outputs/cone.exr --at distance_mm=15.66 --channel regime --channel force_un -o row.csv
   whiskmap extract scenes/morphology.toml --at taper=0.95 --at curvature_per_mm=0.02 -o slice.csv
 

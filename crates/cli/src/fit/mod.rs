@@ -76,7 +76,12 @@ pub fn run(args: &FitArgs, files: &mut Files) -> Result<(), Failure> {
     // Points that name their whiskers belong to several whiskers of a table.
     let (scene, points) = match points.whiskers.is_empty() || scene.whisker_count() == 1 {
         true => {
-            check_single(&scene, "fit")?;
+            check_single(&scene, "fit").map_err(|why| match why {
+                Failure::Input(why) if !scene.table.is_empty() => Failure::Input(format!(
+                    "{why}, or name the whisker of each point in a column whisker of --data"
+                )),
+                why => why,
+            })?;
             let points = points.at(&scene.first_whisker().place)?;
             (scene.of_whisker(0)?, points)
         }

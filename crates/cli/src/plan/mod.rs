@@ -22,7 +22,7 @@ Examples:
   whiskmap plan scenes/cone.toml
   whiskmap plan scenes/morphology.toml --format zarr --digits 5 --tolerance 1e-3deg
   whiskmap plan scenes/morphology.toml --engine cpu --shards 8
-  whiskmap plan - < my_whisker.toml
+  whiskmap plan - < scenes/cone.toml
 
 plan takes all options of map. Effects with their own kernel add work to every integration step. The others are free: pole \
 radius and friction only change the start of a trajectory, and projection is a faster taper and a steeper modulus gradient. \
