@@ -1,7 +1,6 @@
 //! The lines of a CSV file, split into cells.
 
 use csv::{ReaderBuilder, StringRecord};
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Line of a CSV file: its cells, and its number from 1.
 #[derive(Clone, Debug)]
@@ -54,15 +53,9 @@ const SENTINEL: [&str; 2] = ["\n\"", "end"];
 
 /// Splits a CSV text into lines that are neither blank nor comments nor declare the separator; a cell in quotes may have line breaks.
 ///
-/// If `cancel` becomes true, only the lines so far are returned.
-///
 /// # Errors
 /// The number of the line with a quote that is not closed, from 1, and a message about it.
-pub(super) fn lines(
-    text: &str,
-    separator: char,
-    cancel: &AtomicBool,
-) -> Result<Vec<CsvLine>, (usize, String)> {
+pub(super) fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize, String)> {
     let guarded = [text, &SENTINEL.concat()].concat();
     let mut reader = ReaderBuilder::new()
         .has_headers(false)
@@ -75,9 +68,6 @@ pub(super) fn lines(
     let (mut number, mut counted) = (1, 0);
     let mut last = (1, StringRecord::new());
     for cells in reader.records() {
-        if cancel.load(Ordering::Relaxed) {
-            return Ok(lines);
-        }
         let mut cells = cells.map_err(|why| (number, why.to_string()))?;
         // A record's position is before the blank lines and comments that the reader has left out.
         let start = cells.position().map_or(0, |place| place.byte() as usize);
@@ -107,17 +97,7 @@ const OPEN_QUOTE: &str = "has a cell that begins with a quote: must have a quote
 
 #[cfg(test)]
 mod tests {
-    use super::{AtomicBool, CsvLine};
-
-    fn lines(text: &str, separator: char) -> Result<Vec<CsvLine>, (usize, String)> {
-        super::lines(text, separator, &AtomicBool::new(false))
-    }
-
-    #[test]
-    fn a_cancelled_text_is_not_split() {
-        let found = super::lines("a,b\n1,2\n", ',', &AtomicBool::new(true));
-        assert_eq!(found.map(|lines| lines.len()), Ok(0));
-    }
+    use super::lines;
 
     #[test]
     fn a_quote_that_is_not_closed_is_found() {

@@ -7,7 +7,6 @@ use crate::terminal::escaped;
 use std::fs::File;
 use std::io;
 use std::path::Path;
-use std::sync::atomic::AtomicBool;
 
 /// Name of standard input in messages.
 pub(crate) const STDIN: &str = "<stdin>";
@@ -105,17 +104,7 @@ impl CsvTable {
     /// # Errors
     /// If there is no row, a quote is not closed, or a row has fewer cells than the header has names, or more that are not empty.
     pub fn parse(text: &str, origin: &str) -> Result<Self, CsvError> {
-        Self::parse_until(text, origin, &AtomicBool::new(false))
-    }
-
-    /// Splits the text of a CSV file as [`CsvTable::parse`] does. If `cancel` becomes true, the table soon has only the lines so far, or is refused for
-    /// the lack of lines.
-    pub(crate) fn parse_until(
-        text: &str,
-        origin: &str,
-        cancel: &AtomicBool,
-    ) -> Result<Self, CsvError> {
-        let mut split = CsvLines::split_until(text, origin, cancel)?;
+        let mut split = CsvLines::split(text, origin)?;
         if split.lines.len() < 2 {
             let what = "has no rows: must have a header and at least one row below it";
             return Err(CsvError::whole(origin, what));
@@ -325,16 +314,15 @@ pub(crate) struct CsvLines {
 }
 
 impl CsvLines {
-    /// Splits the text of a CSV file into the lines of its cells. Messages call the file `origin`. If `cancel` becomes true, only the lines so far are
-    /// returned.
+    /// Splits the text of a CSV file into the lines of its cells. Messages call the file `origin`.
     ///
     /// # Errors
     /// If a quote is not closed.
-    pub fn split_until(text: &str, origin: &str, cancel: &AtomicBool) -> Result<Self, CsvError> {
+    pub fn split(text: &str, origin: &str) -> Result<Self, CsvError> {
         let text = normalised(text);
         let separator = separator(&text);
-        let lines = lines(&text, separator, cancel)
-            .map_err(|(line, what)| CsvError::at(origin, line, what))?;
+        let lines =
+            lines(&text, separator).map_err(|(line, what)| CsvError::at(origin, line, what))?;
         Ok(Self { separator, lines })
     }
 

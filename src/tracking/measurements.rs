@@ -11,7 +11,6 @@ use super::{
 use crate::input::{CsvError, CsvTable};
 use crate::scene::digits;
 use std::collections::BTreeMap;
-use std::sync::atomic::AtomicBool;
 
 /// Required columns: one of each group.
 const NEEDED: [&[&str]; 7] = [
@@ -33,16 +32,14 @@ const OTHERS: [&str; 6] = ["face_x", "face_y", "length", "pixel_length", "score"
 /// Largest size of a position in pixels, and of a curvature in 1/px.
 const MOST: f64 = 1e6;
 
-/// Reads the frames of one whisker, until `cancel` becomes true. Of several segments in a frame with its identity, the one with the longest chord
-/// counts.
+/// Reads the frames of one whisker. Of several segments in a frame with its identity, the one with the longest chord counts.
 pub(super) fn read(
     text: &str,
     origin: &str,
     options: &TrackingOptions,
-    cancel: &AtomicBool,
 ) -> Result<ImageFrames, TrackingError> {
     refuse_points(options)?;
-    let table = CsvTable::parse_until(text, origin, cancel)?;
+    let table = CsvTable::parse(text, origin)?;
     // Absent columns are not passed, so that no other column is refused for them.
     let optional = IDENTITY.into_iter().chain(OTHERS);
     let optional: Vec<&str> = optional.filter(|name| table.has(name)).collect();

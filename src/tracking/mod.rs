@@ -198,16 +198,14 @@ impl Tracking {
             return Err(CsvError::whole(&rest[0].1, what).into());
         }
         let (text, origin) = first;
-        let read = match format {
-            TrackingFormat::DeepLabCut => CsvLines::split_until(text, origin, cancel)
-                .map_err(TrackingError::from)
-                .and_then(|lines| deeplabcut::read(lines, origin, options, cancel)),
-            TrackingFormat::Whisk => measurements::read(text, origin, options, cancel),
-            TrackingFormat::Xy => points::read(texts, options, cancel),
+        let mut image = match format {
+            TrackingFormat::DeepLabCut => {
+                let lines = CsvLines::split(text, origin)?;
+                deeplabcut::read(lines, origin, options, cancel)?
+            }
+            TrackingFormat::Whisk => measurements::read(text, origin, options)?,
+            TrackingFormat::Xy => points::read(texts, options)?,
         };
-        // A file that is read in part may lack what it must have.
-        go_on()?;
-        let mut image = read?;
         let numbers = image.frames.iter().map(|frame| frame.number);
         let span = numbers.clone().max().zip(numbers.min());
         let Some((last, from)) = span.filter(|(last, from)| last - from < MOST_FRAMES) else {

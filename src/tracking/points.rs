@@ -5,13 +5,11 @@ use super::options::{ImagePole, TrackingError, TrackingOptions, refused};
 use super::{ImageFrame, ImageFrames, PointOrder, Remarks};
 use crate::input::{CsvError, CsvLine, CsvLines, shortened};
 use crate::scene::digits;
-use std::sync::atomic::AtomicBool;
 
-/// Reads the frames of files, until `cancel` becomes true. An empty file among several is a lost frame, and a point without numbers is a lost point.
+/// Reads the frames of files. An empty file among several is a lost frame, and a point without numbers is a lost point.
 pub(super) fn read(
     texts: &[(String, String)],
     options: &TrackingOptions,
-    cancel: &AtomicBool,
 ) -> Result<ImageFrames, TrackingError> {
     let empty = |origin: &str| {
         Err(CsvError::whole(origin, "has no points: must have x,y or frame,x,y").into())
@@ -19,7 +17,7 @@ pub(super) fn read(
     let nameless = |option, value: &str| {
         // A file without lines may be of any tracker.
         if let [(text, origin)] = texts
-            && CsvLines::split_until(text, origin, cancel)?.lines.is_empty()
+            && CsvLines::split(text, origin)?.lines.is_empty()
         {
             return empty(origin);
         }
@@ -44,7 +42,7 @@ pub(super) fn read(
     let mut frames: Vec<ImageFrame> = Vec::new();
     let (files, note) = in_order(texts)?;
     for (file, (text, origin)) in files {
-        let mut lines = CsvLines::split_until(text, origin, cancel)?;
+        let mut lines = CsvLines::split(text, origin)?;
         let names = [&["x", "y"][..], &["frame", "x", "y"]];
         let is_header = |line: &CsvLine| names.iter().any(|names| line.cells == **names);
         if lines.lines.first().is_some_and(is_header) {
