@@ -84,9 +84,6 @@ fn a_store_is_on_the_disk_when_its_command_ends() {
             run.assert_said(1, "error: cannot write new/scene.zarr");
             run.assert_said(1, "Input/output error (os error 5)\n");
             assert!(!run.err.contains("panicked"), "{run:?}");
-            // The root, its folder, and the first files of the metadata: the store is not created.
-            let is_there = faulty.place.path("new/scene.zarr").exists();
-            assert!(after > 4 || !is_there, "{after}");
             fs::remove_dir_all(faulty.place.path("new")).unwrap();
             continue;
         }

@@ -23,32 +23,16 @@ impl ZarrStore {
     /// If several processes create a store at the same time, one creates it, and the others join it.
     ///
     /// # Errors
-    /// The existing store was created with other settings or must not exist, or one of its folders cannot be written. What was made of a new store is
-    /// removed then, unless it may exist.
+    /// The existing store was created with other settings or must not exist, or one of its folders cannot be written.
     pub fn begin(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
-        let was_there = self.path.exists();
         let made = temporary.create_folders(&self.path);
         made.map_err(StoreError::at(&self.path, StoreError::Write))?;
         let root = self.path.join(METADATA);
         let created = create(&root, &[self.root()], temporary, false);
-        if created.as_ref().is_err_and(|why| why.kind() == io::ErrorKind::AlreadyExists) {
-            self.agree()?;
-            return self.prepare_folders(temporary);
+        match created.and_then(|()| sync_folder(&self.path)) {
+            Err(why) if why.kind() == io::ErrorKind::AlreadyExists => self.agree()?,
+            created => created.map_err(StoreError::at(&root, StoreError::Write))?,
         }
-        let prepared = created
-            .and_then(|()| sync_folder(&self.path))
-            .map_err(StoreError::at(&root, StoreError::Write))
-            .and_then(|()| self.prepare_folders(temporary));
-        // Other processes may have joined a store that may exist.
-        if prepared.is_err() && !self.may_exist {
-            self.remove_metadata(was_there);
-        }
-        prepared
-    }
-
-    /// Creates the folders of the store, restores its metadata, and removes temporary files of interrupted processes. Returns the paths of the files that
-    /// were damaged, `[file]`.
-    fn prepare_folders(&self, temporary: &TemporaryFiles) -> Result<Vec<PathBuf>, StoreError> {
         for array in &self.arrays {
             let folder = self.path.join(&array.name);
             let made = temporary.create_folders(&folder);
@@ -60,16 +44,6 @@ impl ZarrStore {
             temporary.prepare(&folder).map_err(StoreError::at(&folder, StoreError::Write))?;
         }
         Ok(restored)
-    }
-
-    /// Removes the metadata and coordinates of a store that could not be created, and its folders that are empty then; `was_there` keeps that of the
-    /// store.
-    fn remove_metadata(&self, was_there: bool) {
-        for (file, _) in self.metadata_files() {
-            let _ = fs::remove_file(&file);
-            let folder = file.parent().filter(|folder| !was_there || *folder != self.path);
-            let _ = folder.map(fs::remove_dir);
-        }
     }
 
     /// Writes missing and damaged metadata and coordinates of the store again. Returns the paths of the files that were damaged, `[file]`.
