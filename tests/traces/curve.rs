@@ -5,7 +5,7 @@ use crate::shipped::scene;
 use whiskmap::Side;
 use whiskmap::mechanics::shooting::Resolution;
 use whiskmap::mechanics::shooting::batch::Method;
-use whiskmap::scene::{Curvature, Parameter, SweptWhisker, Whisker};
+use whiskmap::scene::{Curvature, EulerSpiral, Parameter, Pole, SweptWhisker, Whisker};
 use whiskmap::sensitivity::{Variable, detachments, detachments_of_sides};
 use whiskmap::sheet::Sheet;
 use whiskmap::trace::{
@@ -45,6 +45,27 @@ fn at_the_corner_slip_off_turns_into_pull_off() {
         }
     }
     assert!(corners > 60, "{corners}");
+}
+
+/// The pole pulls some perfect cones off: a stiff tip and friction keep the contact from sliding beyond their fold.
+#[test]
+fn a_perfect_cone_may_have_a_corner() {
+    let whisker = Whisker {
+        modulus_tip_to_base: 1.5,
+        euler_spiral: Some(EulerSpiral { per_mm: 0.054, per_mm2: 0.0 }),
+        ..Whisker::cone(20.0, [25.0, 0.0], 0.5)
+    };
+    let pole = Pole { radius_mm: 0.18, friction: 0.5 };
+    let distance = corner(&whisker, &pole, Side::Cb).distance_mm.unwrap();
+    let beside = [distance - 1e-8, distance + 1e-8];
+    let kinds = curve(&whisker, &pole, Side::Cb, &beside).into_iter().map(|end| end.kind);
+    let kinds: Vec<DetachmentKind> = kinds.collect();
+    assert_eq!(kinds, [DetachmentKind::SlipOff, DetachmentKind::PullOff], "{distance}");
+    // A tip of 2.5 nm changes little.
+    let blunt = Whisker { tip_radius_um: 0.0025, ..whisker.clone() };
+    let near = corner(&blunt, &pole, Side::Cb).distance_mm.unwrap();
+    assert!((near - distance).abs() < 1e-2, "{near} {distance}");
+    assert_eq!(corner(&whisker, &pole, Side::Cf).reason, Some(NoCorner::AlwaysSlipsOff));
 }
 
 #[test]
