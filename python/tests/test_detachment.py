@@ -50,6 +50,49 @@ def test_labels_must_match_place_by_place(cone):
     np.testing.assert_array_equal(matching.push_angle_deg, plain.push_angle_deg)
 
 
+def labelled(values, labels=None, dimension="whisker"):
+    return xr.DataArray(values, dims=dimension, coords=None if labels is None else {dimension: labels})
+
+
+@pytest.mark.parametrize("distances", [[12.0, 13.0], labelled([12.0, 13.0]), pd.Index([12.0, 13.0])], ids=["list", "xarray", "index"])
+def test_labels_are_compared_where_the_first_argument_has_none(cone, distances):
+    others = dict(taper=labelled([0.5, 0.6], ["a", "b"]), parabola_per_mm=labelled([0.02, 0.0], ["b", "a"]))
+    with pytest.raises(ValueError, match="^parabola_per_mm: has other labels than taper: arrays are combined by place"):
+        wm.detachment(cone, distance_mm=distances, side="cb", **others)
+    others["parabola_per_mm"] = labelled([0.0, 0.02], ["a", "b"])
+    plain = wm.detachment(cone, distance_mm=[12.0, 13.0], side="cb", taper=[0.5, 0.6], parabola_per_mm=[0.0, 0.02])
+    np.testing.assert_array_equal(wm.detachment(cone, distance_mm=distances, side="cb", **others).push_angle_deg, plain.push_angle_deg)
+
+
+@pytest.mark.parametrize("distances", [[12.0, 13.0], pd.Series([12.0, 13.0]), pd.Index([12.0, 13.0])], ids=["list", "series", "index"])
+def test_dimensions_are_compared_where_the_first_argument_has_none(cone, distances):
+    others = dict(taper=labelled([0.5, 0.6]), parabola_per_mm=labelled([0.02, 0.0], dimension="curve"))
+    with pytest.raises(ValueError, match="^parabola_per_mm: has the dimension curve where taper has whisker"):
+        wm.detachment(cone, distance_mm=distances, side="cb", **others)
+
+
+def test_data_frames_have_labels_along_both_axes(cone):
+    distances = pd.DataFrame([[12.0, 13.0], [14.0, 15.0]], index=["a", "b"], columns=["x", "y"])
+    tapers = distances / 20
+    plain = wm.detachment(cone, distance_mm=distances.to_numpy(), taper=tapers.to_numpy(), side="cb")
+    np.testing.assert_array_equal(wm.detachment(cone, distance_mm=distances, taper=tapers, side="cb").push_angle_deg, plain.push_angle_deg)
+    rows = pd.Series([0.5, 0.9], index=["a", "b"])
+    for other in (tapers.set_axis(["y", "x"], axis="columns"), tapers.set_axis(["b", "a"], axis="index"), rows, labelled([0.5, 0.9], ["a", "b"])):
+        with pytest.raises(ValueError, match="^taper: has other labels than distance_mm"):
+            wm.detachment(cone, distance_mm=distances, taper=other, side="cb")
+    # A series or an array of one dimension is broadcast along the columns.
+    columns = rows.set_axis(["x", "y"])
+    plain = wm.detachment(cone, distance_mm=distances.to_numpy(), taper=[0.5, 0.9], side="cb")
+    for other in (columns, labelled([0.5, 0.9], ["x", "y"])):
+        np.testing.assert_array_equal(wm.detachment(cone, distance_mm=distances, taper=other, side="cb").push_angle_deg, plain.push_angle_deg)
+
+
+def test_an_index_of_pandas_is_plain_values(cone):
+    found = wm.detachment(cone, distance_mm=pd.Index([12.0, 15.0]), side=pd.Index(["cb", "cf"]), taper=pd.Series([0.5, 0.9], index=["a", "b"]))
+    plain = wm.detachment(cone, distance_mm=[12.0, 15.0], side=["cb", "cf"], taper=[0.5, 0.9])
+    np.testing.assert_array_equal(found.push_angle_deg, plain.push_angle_deg)
+
+
 def test_rows_of_any_order_are_those_of_the_curve(cone):
     rng = np.random.default_rng(1)
     distances = rng.permutation(np.repeat(np.linspace(5, 19, 20), 2))
@@ -99,6 +142,19 @@ def test_least_squares_of_scipy_finds_the_whisker(cone):
     fit = wm.fit(cone, points, ["tip_radius_um", "parabola_per_mm"])
     np.testing.assert_allclose(found.x, fit.estimates.value, rtol=1e-4)
     assert 2 * found.cost == pytest.approx(fit.chi_square, rel=1e-6)
+
+
+def test_masked_values_are_refused_in_every_argument(cone):
+    sides, numbers = np.ma.array(["cb", "cf"], mask=[False, True]), np.ma.array([0.5, 0.9], mask=[False, True])
+    for side in (sides, sides.astype(object), [sides], ["cb", np.ma.masked], np.ma.array("cb", mask=True), np.ma.masked):
+        with pytest.raises(ValueError, match="^side: has masked values; leave them out"):
+            wm.detachment(cone, distance_mm=[12.0, 15.0], side=side)
+    for taper in (numbers, [numbers], [0.5, np.ma.masked], np.ma.masked):
+        with pytest.raises(ValueError, match="^taper: has masked values; leave them out"):
+            wm.detachment(cone, distance_mm=[12.0, 15.0], taper=taper)
+    sides.mask = False
+    wanted = wm.detachment(cone, distance_mm=[12.0, 15.0], side=["cb", "cf"])
+    np.testing.assert_array_equal(wm.detachment(cone, distance_mm=[12.0, 15.0], side=sides).push_angle_deg, wanted.push_angle_deg)
 
 
 def test_sides_may_be_in_capitals(cone):

@@ -254,3 +254,32 @@ def test_arrays_that_are_combined_by_place_have_equal_labels(cone):
         same = wm.whisk(cone, 15.66, time.set_axis(labels), pd.Series([0, 20.0, 30.0], index=labels))
         assert same.samples.angle_deg.values.tolist() == [0, 20, 30]
     assert wm.whisk(cone, 15.66, time, [0, 20.0, 30.0]).samples.sizes["time_s"] == 3
+
+
+def test_an_index_of_pandas_has_no_labels(cone):
+    time, angle = [0, 0.1, 0.2], [0, 20.0, 30.0]
+    expected = wm.whisk(cone, 15.66, time, angle).samples
+    shuffled = pd.Series(angle, index=[2, 1, 0])
+    for given in ((pd.Index(time), shuffled), (pd.Series(time), pd.Index(angle)), (pd.Index(time), pd.Index(angle, dtype="Float64"))):
+        xr.testing.assert_identical(wm.whisk(cone, 15.66, *given).samples, expected)
+    for index, unit in ((pd.date_range("2026-01-01", periods=3), "datetime64"), (pd.to_timedelta(time, unit="s"), "timedelta64")):
+        for given in (index, pd.Series(index)):
+            with pytest.raises(TypeError, match=f"^time_s: must be real numbers without a unit, has the type {unit}"):
+                wm.whisk(cone, 15.66, given, angle)
+    readings = readings_of(cone)
+    indexes = {name: pd.Index(values) for name, values in readings.items()}
+    xr.testing.assert_identical(wm.locate(cone, indexes), wm.locate(cone, readings))
+
+
+def test_columns_of_a_dataset_have_one_dimension(cone):
+    readings = readings_of(cone)
+    dataset = xr.Dataset({name: ("row", values) for name, values in readings.items()})
+    xr.testing.assert_identical(wm.locate(cone, dataset), wm.locate(cone, readings))
+    dataset["base_force_y_un"] = dataset.base_force_y_un.rename(row="column")
+    with pytest.raises(ValueError, match=r"^readings\['base_force_y_un'\]: has the dimension column where readings\['base_moment_nnm'\] has row"):
+        wm.locate(cone, dataset)
+
+
+def readings_of(scene: wm.Scene) -> dict[str, list[float]]:
+    states = [wm.shape(scene, 12.0, push, points=3).attrs for push in (5.0, 10.0)]
+    return {name: [state[name] for state in states] for name in ("base_moment_nnm", "base_force_y_un")}

@@ -8,6 +8,7 @@ import re
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
 import whiskmap as wm
 
@@ -87,6 +88,7 @@ def test_wrong_tables_are_refused(pad):
         ([3], TypeError, r"table\[0\] = 3: must be a mapping"),
         ({"name": ["A"], "length_mm": [20, 21]}, ValueError, "table: columns must be equally long, have 1 and 2 values"),
         ({"name": ["A"], "length_mm": ["20 mm"]}, TypeError, r"table\[0\]\['length_mm'\] = '20 mm': must be a number"),
+        ({"name": np.ma.array(["A", "B"], mask=[False, True]), "length_mm": [20, 20]}, wm.SceneError, r"whiskers.table\[1\]: the name of the whisker is missing"),
         ({"name": ["A", None], "length_mm": [20, 20]}, wm.SceneError, r"whiskers.table\[1\]: the name of the whisker is missing"),
         (pd.DataFrame({"name": ["A", np.nan]}), wm.SceneError, r"whiskers.table\[1\]: the name of the whisker is missing"),
         (pd.DataFrame([["A", 20, 21]], columns=["name", "length_mm", "length_mm"]), ValueError, "table: has the column length_mm 2 times"),
@@ -99,6 +101,33 @@ def test_wrong_tables_are_refused(pad):
         pad.select("D1")
     with pytest.raises(KeyError, match="C2: base_radius_um is missing"):
         pad.select("C2")
+
+
+def test_rows_of_columns_have_equal_labels(pad):
+    sizes = {"length_mm": [20.0, 25.0], "base_radius_um": [30.0, 20.0], "taper": [0.9, 0.95]}
+    plain = pad.replace(table={"name": ["a", "b"], **sizes})
+
+    def table(kind, labels, names=None):
+        own = {name: kind(values, labels if name == "base_radius_um" else [0, 1]) for name, values in sizes.items()}
+        return {"name": ["a", "b"] if names is None else names, **own}
+
+    def array(values, labels):
+        return xr.DataArray(values, dims="whisker", coords={"whisker": labels})
+
+    for kind, names in ((pd.Series, None), (pd.Series, pd.Series(["a", "b"])), (array, None), (pd.Series, pd.Index(["a", "b"]))):
+        assert pad.replace(table=table(kind, [0, 1], names)) == plain
+        with pytest.raises(ValueError, match=r"^table\['base_radius_um'\]: has other labels than table\['(name|length_mm)'\]: arrays are combined"):
+            pad.replace(table=table(kind, [1, 0], names))
+    other = table(array, [0, 1])
+    other["taper"] = other["taper"].rename(whisker="row")
+    with pytest.raises(ValueError, match=r"^table\['taper'\]: has the dimension row where table\['length_mm'\] has whisker"):
+        pad.replace(table=other)
+    # Measured radii have further axes after that of the whiskers.
+    profile = xr.DataArray([[[0, 30], [20, 2]], [[0, 30], [20, 3]]], dims=("whisker", "row", "column"))
+    measured = {"name": ["a", "b"], "length_mm": array([20.0, 20.0], [0, 1])}
+    assert pad.replace(table=measured | {"profile": profile}) == pad.replace(table=measured | {"profile": profile.values.tolist()})
+    with pytest.raises(ValueError, match=r"^table\['profile'\]: has the dimension row where"):
+        pad.replace(table=measured | {"profile": profile.transpose("row", "whisker", "column")})
 
 
 def test_other_columns_are_named(pad):

@@ -12,7 +12,7 @@ from whiskmap import _whiskmap
 from whiskmap._maps import _checked
 from whiskmap._description import PARAMETERS, resembling
 from whiskmap._scene import Scene
-from whiskmap._values import check_labels, real_array, side_of
+from whiskmap._values import check_labels, real_array, refuse_masked, side_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -131,8 +131,8 @@ def detachment(
     SceneError
         If a value of all elements is out of its range, or with `strict` of one: the message names the argument, the index and the value.
     ValueError
-        If the arguments do not broadcast, or a value is infinite, or with `strict` NaN. If arrays of xarray or series of pandas have other
-        dimensions or labels at the same places.
+        If the arguments do not broadcast, or a value is masked or infinite, or with `strict` NaN. If arrays of xarray, or series or data
+        frames of pandas, have other dimensions or labels at the same axis, counted from the last.
 
     Examples
     --------
@@ -226,6 +226,7 @@ def _is_cb(side: Any) -> NDArray[np.bool_]:
     """True for CB, False for CF; "both" is one axis of both."""
     if isinstance(side, str):
         return np.array([False, True]) if side_of(side) == "both" else np.array(side_of(side) == "cb")
+    refuse_masked("side", side)
     sides = np.asarray(side)
     lower = np.array([own.lower() if isinstance(own, str) else "" for own in sides.ravel()], dtype=np.str_).reshape(sides.shape)
     is_wrong = ~np.isin(lower, ["cb", "cf"])

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any, Literal, Union
 
-from whiskmap._values import check_labels, is_missing, number, number_or_nan, numbers, text_of, unique_names, whole
+from whiskmap._values import check_columns, is_missing, number, number_or_nan, numbers, text_of, unique_names, whole
 from whiskmap._warnings import warn
 from whiskmap._whiskmap import parameters, unused_columns
 
@@ -236,7 +236,7 @@ def pairs_of(name: str, pairs: Any) -> list[list[float]]:
     if hasattr(pairs, "keys"):
         if missing := [own for own in PAIRS[name] if own not in pairs.keys()]:
             raise ValueError(f"{name}: must have the columns {first} and {second}, has no {' and no '.join(missing)}")
-        check_labels({f"{name}[{own!r}]": pairs[own] for own in PAIRS[name]})
+        check_columns(name, {own: pairs[own] for own in PAIRS[name]})
         columns = [numbers(f"{name}[{own!r}]", pairs[own]) for own in PAIRS[name]]
         if len(columns[0]) != len(columns[1]):
             raise ValueError(f"{name}: columns must be equally long, have {len(columns[0])} and {len(columns[1])} numbers")
@@ -255,7 +255,9 @@ def rows_of(table: Any) -> list[Any] | None:
     if table is None:
         return None
     if hasattr(table, "keys"):
-        columns = {str(own): list(table[own]) for own in unique_names("table", table)}
+        given = {str(own): table[own] for own in unique_names("table", table)}
+        check_columns("table", given)
+        columns = {own: list(values) for own, values in given.items()}
         counts = {len(values) for values in columns.values()}
         if len(counts) > 1:
             raise ValueError(f"table: columns must be equally long, have {' and '.join(map(str, sorted(counts)))} values")

@@ -79,6 +79,8 @@ class Scene:
     SceneError
         If a value is out of its range or contradicts another one, or no row of a table has a whisker. `key`, `value` and `allowed` say
         which.
+    ValueError
+        If columns of a table are not equally long, or arrays of xarray or series of pandas among them have other dimensions or labels.
     """
 
     __slots__ = ("_checked",)

@@ -82,8 +82,7 @@ def real_array(name: str, values: ArrayLike) -> NDArray[Any]:
     """Return an array of float64; texts, truths, complex numbers, objects and masked values are refused by the name of their argument."""
     import numpy as np
 
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
-        raise ValueError(f"{name}: has masked values; leave them out")
+    refuse_masked(name, values)
     try:
         array = np.asarray(values)
     except ValueError as why:
@@ -106,22 +105,60 @@ def real_array_or_nan(name: str, values: ArrayLike) -> NDArray[Any]:
     return np.reshape(known, array.shape)
 
 
+def refuse_masked(name: str, values: Any) -> None:
+    """Refuse masked values of numpy, also in lists, by the name of their argument: an array made of them would have no mask."""
+    if _has_masked(values):
+        raise ValueError(f"{name}: has masked values; leave them out")
+
+
+def _has_masked(values: Any) -> bool:
+    import numpy as np
+
+    if isinstance(values, (list, tuple)):
+        return any(map(_has_masked, values))
+    return isinstance(values, np.ma.MaskedArray) and bool(np.ma.is_masked(values))
+
+
 def check_labels(arguments: Mapping[str, Any]) -> None:
-    """Refuse arrays of xarray and series of pandas that are combined by place, but have other dimensions or labels at the same places."""
-    known: dict[int, tuple[str, Any, Any]] = {}
-    for name, values in arguments.items():
-        if hasattr(values, "indexes"):
-            axes = [(dimension, values.indexes.get(dimension)) for dimension in reversed(values.dims)]
-        else:
-            axes = [(None, values.index)] if hasattr(values, "reindex") else []
-        for place, (dimension, labels) in enumerate(axes):
-            other, its_dimension, its_labels = known.setdefault(place, (name, dimension, labels))
-            if dimension is not None and its_dimension is not None and dimension != its_dimension:
-                raise ValueError(
-                    f"{name}: has the dimension {dimension} where {other} has {its_dimension}: arrays are combined by place; broadcast by xarray.broadcast"
-                )
-            if labels is not None and its_labels is not None and not labels.equals(its_labels):
-                raise ValueError(f"{name}: has other labels than {other}: arrays are combined by place; align them, or give their values")
+    """Refuse arrays of xarray and pandas with other dimensions or labels at the same axis. Axes count from the last one, as in broadcasting."""
+    _check_axes({name: _axes(values)[::-1] for name, values in arguments.items()})
+
+
+def check_columns(name: str, columns: Mapping[str, Any]) -> None:
+    """Refuse columns of xarray and pandas with other dimensions or labels of the rows, their first axis."""
+    _check_axes({f"{name}[{own!r}]": _axes(values)[:1] for own, values in columns.items()})
+
+
+# Dimension and labels of an axis; None for what it does not have.
+_Axis = tuple[Any, Any]
+
+
+def _axes(values: Any) -> list[_Axis]:
+    """Return the axes of an array of xarray, or of a series or data frame of pandas; other values have none."""
+    if hasattr(values, "dims"):
+        # Variables of a dataset share its labels.
+        indexes = getattr(values, "indexes", {})
+        return [(dimension, indexes.get(dimension)) for dimension in values.dims]
+    # An index of pandas has `reindex`, too, but no axes.
+    return [(None, labels) for labels in values.axes] if hasattr(values, "reindex") and hasattr(values, "axes") else []
+
+
+def _check_axes(arguments: Mapping[str, list[_Axis]]) -> None:
+    """Compare the dimensions and the labels of each axis with the first known ones there."""
+    dimensions: dict[int, tuple[str, Any]] = {}
+    labels: dict[int, tuple[str, Any]] = {}
+    for name, axes in arguments.items():
+        for place, (own_dimension, own_labels) in enumerate(axes):
+            if own_dimension is not None:
+                other, expected = dimensions.setdefault(place, (name, own_dimension))
+                if own_dimension != expected:
+                    raise ValueError(
+                        f"{name}: has the dimension {own_dimension} where {other} has {expected}: arrays are combined by place; broadcast by xarray.broadcast"
+                    )
+            if own_labels is not None:
+                other, expected = labels.setdefault(place, (name, own_labels))
+                if not own_labels.equals(expected):
+                    raise ValueError(f"{name}: has other labels than {other}: arrays are combined by place; align them, or give their values")
 
 
 def side_of(side: Any, *, is_one: bool = False) -> str:
@@ -178,7 +215,7 @@ def csv_text(name: str, columns: str | os.PathLike[str] | Mapping[str, Any]) -> 
     if not hasattr(table, "keys"):
         raise TypeError(f"{name} = {columns!r}: must be the path of a CSV file, or columns by name")
     given = {str(own): table[own] for own in unique_names(name, table)}
-    check_labels({f"{name}[{own!r}]": values for own, values in given.items()})
+    check_columns(name, given)
     listed = {own: _listed(values) for own, values in given.items()}
     lengths = {own: len(values) for own, values in listed.items()}
     if len(set(lengths.values())) > 1:
