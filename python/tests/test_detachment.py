@@ -163,3 +163,15 @@ def test_sides_may_be_in_capitals(cone):
         np.testing.assert_array_equal(wm.detachment(cone, distance_mm=[12.0, 15.0], side=side).push_angle_deg, wanted.push_angle_deg)
     both = wm.detachment(cone, distance_mm=[12.0, 15.0], side="BOTH")
     np.testing.assert_array_equal(both.push_angle_deg, wm.detachment(cone, distance_mm=[12.0, 15.0]).push_angle_deg)
+
+
+def test_a_pole_that_reaches_the_base_refuses_its_distance_alone():
+    cone = dict(length_mm=20.0, base_radius_um=30.0, youngs_modulus_gpa=3.0, taper=0.95, side="cb")
+    near = wm.detachment(pole_radius_mm=[[0.25], [0.1]], distance_mm=[0.2, 12.0], **cone)
+    alone = wm.detachment(pole_radius_mm=0.25, distance_mm=[12.0], **cone)
+    assert near.kind.tolist() == [["no-whisker", "slip-off"], ["slip-off", "slip-off"]]
+    assert near.push_angle_deg[0, 1] == alone.push_angle_deg[0]
+    assert list(near.refused) == [(0, 0)] and "0.2" in near.refused[0, 0]
+    # A radius that no distance allows refuses them all.
+    with pytest.raises(wm.SceneError, match="pole_radius_mm"):
+        wm.detachment(pole_radius_mm=-0.25, distance_mm=[11.0, 12.0], **cone)

@@ -30,7 +30,8 @@ pub enum NoCorner {
     AlwaysSlipsOff,
     /// No corner exists: every push that begins ends at the tip.
     AlwaysPullsOff,
-    /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing.
+    /// No corner was found: the fold with the contact at the tip, or an end next to it, is missing, as next to the point of a perfect cone that is
+    /// pulled off. With a tip of 1e-4 of the base radius, such a cone has a corner.
     NotFound,
     /// The row of the table of whiskers has no whisker.
     NoWhisker,
@@ -66,7 +67,10 @@ fn corner_distance(
 ) -> Result<f64, NoCorner> {
     let rod = whisker.rod(pole, side);
     let (rest, length) = (Rest::new(&rod), whisker.length_mm);
-    if let Some(fold) = Sheet::fold_at_tip(Method::fine(), &rod, side) {
+    // A perfect cone is cut a billionth of its length before its point: a corner at the cut is none of the cone.
+    let is_pointed = rod.taper >= 1.0;
+    let fold = Sheet::fold_at_tip(Method::fine(), &rod, side).filter(|_| !is_pointed);
+    if let Some(fold) = fold {
         let at_tip = rest.distance_of_pole(fold.variation.map.pole.length()) * length;
         let beside = [-1.0, 1.0].map(|sign| at_tip + sign * CORNER_TOLERANCE * length);
         let kinds: Vec<DetachmentKind> = ends(&beside).iter().map(|end| end.kind).collect();
@@ -90,8 +94,10 @@ fn switch(
     length: f64,
     [nearest, farthest]: [f64; 2],
 ) -> Result<f64, NoCorner> {
-    let samples: Vec<f64> = (1..=CORNER_SAMPLES)
-        .map(|i| nearest + (farthest - nearest) * f64::from(i) / f64::from(CORNER_SAMPLES))
+    // Pushes end at the tip at the farthest distances, if at any: the samples are dense there.
+    let samples: Vec<f64> = (1..CORNER_SAMPLES)
+        .map(|i| f64::from(i) / f64::from(CORNER_SAMPLES))
+        .map(|part| nearest + (farthest - nearest) * (1.0 - (1.0 - part).powi(3)))
         .map(|distance| distance * length)
         .collect();
     let is_pulled = |end: &Detachment| end.kind == DetachmentKind::PullOff;

@@ -117,6 +117,10 @@ impl DetachmentRows<'_> {
                 Err(why) => why,
             };
             let place = why.key().and_then(|key| {
+                if key == Parameter::PoleRadiusMm.key() {
+                    // The nearest pole would reach the base; farther ones may not.
+                    return Some(0);
+                }
                 let place = key.strip_prefix("grid.distance_mm[")?.strip_suffix(']')?;
                 place.parse::<usize>().ok()
             });
