@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Runs all checks: format, lints, documentation, tests, and Python readers of a map and a store. On Debian and Ubuntu, it first
 # installs Mesa's software Vulkan driver (lavapipe) if there is no Vulkan driver, so that the shaders run on any machine. It
-# installs pip if Python has neither the readers nor pip. `tests/run.sh build` ends before the tests run.
+# installs pip if Python has neither the readers nor pip.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -19,13 +19,6 @@ fi
 # Mesa prints an error if this is unset.
 export XDG_RUNTIME_DIR="${XDG_RUNTIME_DIR:-/tmp}"
 
-target="${CARGO_TARGET_DIR:-target}"
-export PYTHONPATH="$target/python${PYTHONPATH:+:$PYTHONPATH}"
-if ! python3 -c 'import numpy, OpenEXR, xarray, zarr' 2>/dev/null; then
-    python3 -m pip --version >/dev/null || as_root apt-get install -y -q --no-install-recommends python3-pip
-    python3 -m pip install -q --target "$target/python" numpy OpenEXR xarray zarr
-fi
-
 # The extension of the Python package has no tests. With it, dependencies have the features that the extension requires, so that its wheel
 # is built on the crates that the tests have built.
 packages=(-p whiskmap -p whiskmap-cli -p whiskmap-mechanics -p whiskmap-plot -p whiskmap-python)
@@ -35,9 +28,6 @@ cargo fmt --check
 cargo clippy "${packages[@]}" --all-targets "${options[@]}" -- -D warnings
 cargo clippy -p whiskmap --lib --no-default-features --profile checked --locked -- -D warnings
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps "${packages[@]}" "${options[@]}"
-cargo test "${packages[@]}" "${options[@]}" --no-run
-if [ "${1:-}" = build ]; then exit; fi
-
 log="$(mktemp)"
 trap 'rm -f "$log"' EXIT
 # Some tests wait for processes and files: one thread more than cores keeps all cores busy.
@@ -49,6 +39,12 @@ if grep -E '^test .* \.\.\. ignored' "$log"; then
 fi
 
 # Python reads the files of the program under test as the documentation does.
+target="${CARGO_TARGET_DIR:-target}"
+export PYTHONPATH="$target/python${PYTHONPATH:+:$PYTHONPATH}"
+if ! python3 -c 'import numpy, OpenEXR, xarray, zarr' 2>/dev/null; then
+    python3 -m pip --version >/dev/null || as_root apt-get install -y -q --no-install-recommends python3-pip
+    python3 -m pip install -q --target "$target/python" numpy OpenEXR xarray zarr
+fi
 for scene in cone morphology; do
     "$target/checked/whiskmap" map "scenes/$scene.toml" --engine cpu --no-png -o "$target/maps"
     python3 tests/read_map.py "$target/maps/$scene.exr"
