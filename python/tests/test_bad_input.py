@@ -76,7 +76,7 @@ CASES = {
     "fit free": (ValueError, "free = 'tapr'", lambda s: wm.fit(s, {"side": ["cb"], "distance_mm": [9], "push_angle_deg": [9]}, ["tapr"])),
     "two targets": (TypeError, "exactly one of", lambda s: wm.design(s, "taper", distance_mm=9, slip_off_deg=9, pull_off_deg=9)),
     "target": (ValueError, "must be negative with side='cf'|must be positive", lambda s: wm.design(s, "taper", distance_mm=9, slip_off_deg=9, side="cf")),
-    "target that is no number": (ValueError, "^slip_off_deg = NaN: must be between -360 and 360", lambda s: wm.design(s, "taper", distance_mm=9, slip_off_deg=np.nan)),
+    "target that is no number": (ValueError, "^slip_off_deg = NaN: must be between -3240 and 3240", lambda s: wm.design(s, "taper", distance_mm=9, slip_off_deg=np.nan)),
     "negative load": (ValueError, "^max_force_un = -5: must be more than 0", lambda s: wm.design(s, "taper", distance_mm=9, side="cb", max_force_un=-5)),
     "negative one of two loads": (ValueError, "^max_strain = -1: must be more than 0", lambda s: wm.design(s, ["taper", "base_radius_um"], distance_mm=9, side="cb", max_force_un=5, max_strain=-1)),
     "folder": (IsADirectoryError, "tests", lambda s: wm.Scene.read(SELF.parent)),
