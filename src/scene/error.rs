@@ -5,7 +5,6 @@ use std::ops::Range;
 use annotate_snippets::{AnnotationKind, Group, Level, Renderer, Snippet};
 use thiserror::Error;
 
-use super::toml::places_of;
 use crate::input::{did_you_mean, shortened};
 use crate::terminal::{escaped, escaped_but};
 
@@ -37,8 +36,13 @@ impl SceneError {
         }
     }
 
-    /// Creates an error from one of the TOML reader, in the terms of TOML rather than of Rust.
-    pub(super) fn of_toml(origin: &str, text: &str, why: &toml_edit::de::Error) -> Self {
+    /// Creates an error from one of the TOML reader, in the terms of TOML rather than of Rust. `places_of` returns the places in a scene file of a name.
+    pub(super) fn of_toml(
+        origin: &str,
+        text: &str,
+        why: &toml_edit::de::Error,
+        places_of: fn(&str) -> Vec<String>,
+    ) -> Self {
         let message = match why.message().rsplit_once(", expected ") {
             Some((found, expected)) => {
                 let found = match found {
@@ -52,7 +56,7 @@ impl SceneError {
                     kind if kind == "a map" || kind.starts_with("struct ") => "a table",
                     _ => expected,
                 };
-                let hint = suggestion(&found, expected);
+                let hint = suggestion(&found, expected, places_of);
                 format!("{found}, expected {expected}{hint}")
             }
             None => shortened(why.message()),
@@ -137,7 +141,7 @@ impl SceneError {
 
 /// The end of a message about an unknown field: the places of a scene that have its name, or else the key among those expected that resembles it, if
 /// one does.
-fn suggestion(found: &str, expected: &str) -> String {
+fn suggestion(found: &str, expected: &str, places_of: fn(&str) -> Vec<String>) -> String {
     // TOML quotes every key in backticks.
     let keys = |text: &'_ str| text.split('`').skip(1).step_by(2).map(str::to_owned).collect();
     let (found, expected): (Vec<String>, Vec<String>) = (keys(found), keys(expected));
@@ -224,7 +228,7 @@ mod tests {
             let why: Error = serde::de::Error::unknown_field("lenght_mm", known);
             let why = why.to_string();
             let (found, expected) = why.rsplit_once(", expected ").unwrap_or_default();
-            let hint = suggestion(found, expected);
+            let hint = suggestion(found, expected, |_| Vec::new());
             assert_eq!(hint, "; did you mean `length_mm`?", "{why}");
         }
     }

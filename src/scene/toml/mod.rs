@@ -47,7 +47,7 @@ const OTHER_KEYS: [&str; 18] = [
 
 /// Returns the places in a scene file of a `name`: keys that end with it or belong to the parameter of this name, and tables, in brackets.
 /// Empty without such a place.
-pub(in crate::scene) fn places_of(name: &str) -> Vec<String> {
+fn places_of(name: &str) -> Vec<String> {
     let parameters = Parameter::ALL.into_iter().filter(|one| *one != Parameter::Taper);
     let axes = Parameter::SWEPT.into_iter().map(Parameter::axis_key);
     let keys = parameters.clone().map(Parameter::key).chain(OTHER_KEYS).chain(axes);

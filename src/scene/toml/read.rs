@@ -22,7 +22,7 @@ use crate::scene::{Scene, SceneBuilder};
 use crate::traced::{MOST_DEGREE, TracedShape};
 
 use super::pairs::PairsCsv;
-use super::{SceneFile, SceneText, TAPER_KEY, place_in};
+use super::{SceneFile, SceneText, TAPER_KEY, place_in, places_of};
 
 impl Scene {
     /// Reads and checks a scene file; `-` is standard input. Where the file does not name its output, the
@@ -78,7 +78,7 @@ fn checked(
     path: &Path,
     folder: Option<&Path>,
 ) -> Result<Scene, SceneError> {
-    let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why);
+    let refused = |why: toml_edit::de::Error| SceneError::of_toml(origin, text, &why, places_of);
     let document = Document::parse(text).map_err(|why| refused(why.into()))?;
     let file = SceneFile::deserialize(Deserializer::from(document)).map_err(refused)?;
     let mut files = Vec::new();
